@@ -1,0 +1,127 @@
+"""The errors of ninefold: one root, and leaves that also are the built-in error a caller would expect.
+
+A message says what was given, what failed and what to do. "Inconsistent" and "unknown" are answers, never errors.
+
+Examples
+--------
+>>> from ninefold.errors import UnknownName
+>>> str(UnknownName("vertex", "v33", ["v1", "v3", "kitchen"]))
+"there is no vertex named 'v33'; did you mean 'v3'?"
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+__all__ = [
+    "AmbiguousDart",
+    "AtlasError",
+    "BadInput",
+    "DifferentMaps",
+    "EmptySet",
+    "MissingExtra",
+    "NinefoldError",
+    "NotACycle",
+    "NotPlane",
+    "TooLarge",
+    "UnknownName",
+    "WalkError",
+]
+
+
+class NinefoldError(Exception):
+    """Root of every error that ninefold raises on purpose."""
+
+
+class BadInput(NinefoldError, ValueError):
+    """A value, file or argument that cannot be what it has to be."""
+
+
+class UnknownName(NinefoldError, KeyError):
+    """A name that the map, atlas or calculus does not have; near ones are suggested.
+
+    Attributes
+    ----------
+    kind, name
+        What was looked up ("vertex", "edge", "set", ...) and the name given.
+    near
+        Up to three existing names that look alike.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str] = ()) -> None:
+        self.kind = kind
+        self.name = name
+        self.near = tuple(get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5))
+        hint = f"; did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
+        self.message = f"there is no {kind} named {name!r}{hint}"
+        super().__init__(self.message)
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class NotPlane(BadInput):
+    """Rotation system, headings or closures that no drawing in the plane can have.
+
+    Attributes
+    ----------
+    genus
+        Genus of the surface the rotation system lives on, or None where the turning numbers failed.
+    edges
+        Names of the edges of a shortest offending part.
+    """
+
+    def __init__(self, message: str, *, genus: int | None = None, edges: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.genus = genus
+        self.edges = tuple(edges)
+
+
+class NotACycle(BadInput):
+    """A list of vertices or edges that is not one simple cycle (or not one path)."""
+
+
+class AmbiguousDart(BadInput):
+    """Two darts that answer to the same description: headings too close, or several parallel edges."""
+
+
+class EmptySet(BadInput):
+    """An operation on sets whose result would hold nothing."""
+
+
+class DifferentMaps(BadInput):
+    """Sets of two different maps in one question."""
+
+
+class WalkError(BadInput):
+    """A walk log, or one event of it, that cannot be.
+
+    Attributes
+    ----------
+    where
+        File and line, or the number of the event, counted from 1.
+    """
+
+    def __init__(self, message: str, *, where: str = "") -> None:
+        super().__init__(f"{where}: {message}" if where else message)
+        self.where = where
+
+
+class AtlasError(NinefoldError, OSError):
+    """An atlas file that cannot be opened, read or written."""
+
+
+class TooLarge(NinefoldError, MemoryError):
+    """A request that cannot fit; the message says how much it would take."""
+
+
+class MissingExtra(NinefoldError, ImportError):
+    """An optional dependency that is not installed; the message says which extra brings it."""
+
+    def __init__(self, feature: str, extra: str) -> None:
+        self.extra = extra
+        super().__init__(f"{feature} needs an optional part: pip install 'ninefold[{extra}]'")
