@@ -1,1 +1,3 @@
 """mapping."""
+from .plane import PlaneMap
+from .heading import Heading

@@ -1,0 +1,238 @@
+"""Plane maps from coordinates: the one place in `ninefold.mapping` that sees them.
+
+Coordinates give three things and are then dropped: the heading at both ends of every edge and its net rotation, hence the
+rotation system and the outer face; and, where the source has several components, which face hosts which component, found by
+looking west from each component's westernmost point. A component is tied to its host face by a tether.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ninefold.errors import BadInput
+
+from . import _orbits, checks
+from .heading import TAU
+from .names import Names
+from .tethers import tie_components
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from .plane import PlaneMap
+
+__all__ = ["from_geometry"]
+
+_CLOSEST = 1e-12
+
+
+def from_geometry(
+    points: ArrayLike,
+    edges: ArrayLike,
+    paths: Sequence[ArrayLike | None] | None = None,
+    *,
+    vertex_names: Iterable[str | int] | None = None,
+    edge_names: Iterable[str | int] | None = None,
+) -> PlaneMap:
+    """Make a plane map from vertices with coordinates and edges that do not cross.
+
+    Parameters
+    ----------
+    points
+        (V, 2) coordinates, x east and y north.
+    edges
+        (E, 2) integers, the rows of `points` an edge joins; parallel edges and loops need `paths`.
+    paths
+        Per edge None for a straight edge, or a (k, 2) polyline that includes both ends.
+    vertex_names, edge_names
+        Labels; row numbers if left out.
+
+    Returns
+    -------
+    PlaneMap
+        With headings and turns. Coordinates are not kept.
+
+    Raises
+    ------
+    BadInput
+        For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+    NotPlane
+        Where Euler's formula or the turning numbers show that edges cross. Crossings that leave both whole, such as a dead
+        end across a street, are not searched for.
+
+    Notes
+    -----
+    Complexity O(V + E + sum over vertices of degree log degree), and one ray per component.
+
+    Examples
+    --------
+    >>> from ninefold.mapping import PlaneMap
+    >>> PlaneMap.from_geometry([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
+    PlaneMap(3 vertices, 3 edges, 2 faces)
+    """
+    from .plane import PlaneMap
+
+    xy, ends = _points(points), _edges(edges)
+    n_vertices, n_edges = len(xy), len(ends)
+    if n_edges and (int(ends.min()) < 0 or int(ends.max()) >= n_vertices):
+        raise BadInput(f"edges must hold rows of points, 0 to {n_vertices - 1}; found {int(ends.max())}")
+    v_names = Names("vertex", n_vertices, vertex_names)
+    e_names = Names("edge", n_edges, edge_names)
+    heading, turn, line, start = _bearings(xy, ends, paths, e_names)
+    tail = np.ascontiguousarray(ends.reshape(-1), dtype=np.int32)
+    next_ccw = _rotation(tail, heading, n_vertices, v_names, e_names)
+    tether = np.zeros(n_edges, np.bool_)
+    derived = checks.derive(tail, next_ccw, v_names, e_names)
+    if derived.n_components > 1:
+        segments = _segments(xy, ends, line, start)
+        tail, next_ccw = tie_components(tail, next_ccw, heading, turn, derived, xy, segments, e_names)
+        extra = tail.size // 2 - n_edges
+        tether = np.concatenate([tether, np.ones(extra, np.bool_)])
+        heading = np.concatenate([heading, np.full(2 * extra, np.nan)])
+        turn = np.concatenate([turn, np.full(extra, np.nan)])
+        e_names = _with_tether_names(e_names, extra)
+    return PlaneMap.from_darts(
+        tail,
+        next_ccw,
+        n_vertices=n_vertices,
+        tether=tether,
+        heading=heading,
+        turn=turn,
+        vertex_names=v_names,
+        edge_names=e_names,
+    )
+
+
+def _points(points: ArrayLike) -> NDArray[np.float64]:
+    try:
+        xy = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise BadInput("points must be a (V, 2) array of numbers") from None
+    if xy.ndim != 2 or xy.shape[1] != 2 or not len(xy):
+        raise BadInput(f"points must have shape (V, 2) with V at least 1, not {xy.shape}")
+    if not np.isfinite(xy).all():
+        raise BadInput(f"point {int(np.flatnonzero(~np.isfinite(xy).all(axis=1))[0])} is not finite")
+    return xy
+
+
+def _edges(edges: ArrayLike) -> NDArray[np.int64]:
+    array = np.asarray(edges)
+    if array.size == 0:
+        return np.zeros((0, 2), np.int64)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise BadInput(f"edges must be integers of shape (E, 2), not {array.dtype} of shape {array.shape}")
+    return array.astype(np.int64)
+
+
+def _bearings(
+    xy: NDArray[np.float64],
+    ends: NDArray[np.int64],
+    paths: Sequence[ArrayLike | None] | None,
+    names: Names,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.int64]]:
+    """Headings (2E,), turns (E,), and all polylines (straight ones too) as one (N, 2) array with offsets (E + 1,)."""
+    n_edges = len(ends)
+    if paths is None or all(path is None for path in paths):
+        step = xy[ends[:, 1]] - xy[ends[:, 0]]
+        flat = np.flatnonzero((step == 0).all(axis=1))
+        if flat.size:
+            raise _no_length(names[int(flat[0])])
+        out = np.arctan2(step[:, 1], step[:, 0])
+        heading = np.empty(2 * n_edges)
+        heading[0::2] = out
+        heading[1::2] = np.where(out > 0, out - np.pi, out + np.pi)
+        return heading, np.zeros(n_edges), None, np.zeros(0, np.int64)
+    if len(paths) != n_edges:
+        raise BadInput(f"{len(paths)} paths for {n_edges} edges; give one each, or None for a straight edge")
+    lines = [_polyline(xy, ends, e, path, names) for e, path in enumerate(paths)]
+    start = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
+    line = np.concatenate(lines)
+    step = np.diff(line, axis=0)
+    yaw = np.arctan2(step[:, 1], step[:, 0])
+    bend = np.diff(yaw)
+    bend -= TAU * np.round(bend / TAU)
+    # Segment i of the whole array joins points i and i + 1; those between two edges do not count.
+    first, last = start[:-1], start[1:] - 2
+    heading = np.empty(2 * n_edges)
+    heading[0::2] = yaw[first]
+    heading[1::2] = np.where(yaw[last] > 0, yaw[last] - np.pi, yaw[last] + np.pi)
+    reach = np.concatenate([[0.0], np.cumsum(np.where(_inner_bends(start, len(bend)), bend, 0.0))])
+    turn = reach[last] - reach[first]
+    spike = np.flatnonzero(_inner_bends(start, len(bend)) & (np.abs(bend) > np.pi - 1e-12))
+    if spike.size:
+        e = int(np.searchsorted(start, spike[0], side="right")) - 1
+        raise BadInput(f"the path of edge {names[e]!r} turns back on itself; a path may not retrace its way")
+    return heading, turn, line, start
+
+
+def _inner_bends(start: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+    """Mark the bends (between segments i and i + 1) that lie inside one edge."""
+    inner = np.ones(count, np.bool_)
+    joints = start[1:-1]
+    for shift in (-2, -1):  # the segment between two edges is joints - 1; it takes part in the bends before and after
+        at = joints + shift
+        inner[at[(at >= 0) & (at < count)]] = False
+    return inner
+
+
+def _polyline(
+    xy: NDArray[np.float64], ends: NDArray[np.int64], e: int, path: ArrayLike | None, names: Names
+) -> NDArray[np.float64]:
+    a, b = xy[ends[e, 0]], xy[ends[e, 1]]
+    if path is None:
+        line = np.stack([a, b])
+    else:
+        try:
+            line = np.asarray(path, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise BadInput(f"the path of edge {names[e]!r} must be a (k, 2) array of numbers") from None
+        if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
+            raise BadInput(f"the path of edge {names[e]!r} must be finite points of shape (k, 2), k at least 2")
+        if not (np.array_equal(line[0], a) and np.array_equal(line[-1], b)):
+            raise BadInput(f"the path of edge {names[e]!r} does not begin and end at the points it joins")
+        line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
+    if len(line) < 2 or (len(line) == 2 and np.array_equal(line[0], line[1])):
+        raise _no_length(names[e])
+    return line
+
+
+def _no_length(name: str) -> BadInput:
+    return BadInput(f"edge {name!r} has no length; drop it, merge its ends, or give a loop its path")
+
+
+def _rotation(
+    tail: NDArray[np.int32], heading: NDArray[np.float64], n_vertices: int, v_names: Names, e_names: Names
+) -> NDArray[np.int32]:
+    next_ccw, closest, at = _orbits.sort_rotation.for_work(tail.size)(tail, heading, n_vertices)
+    if closest < _CLOSEST:
+        other = int(next_ccw[at])
+        raise BadInput(
+            f"edges {e_names[int(at) >> 1]!r} and {e_names[other >> 1]!r} leave vertex {v_names[int(tail[at])]!r} in the "
+            "same direction; merge them, or give the path of one a first piece of its own"
+        )
+    return np.asarray(next_ccw, dtype=np.int32)
+
+
+def _segments(
+    xy: NDArray[np.float64], ends: NDArray[np.int64], line: NDArray[np.float64] | None, start: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Every straight piece, (S, 4) as x0 y0 x1 y1 along dart 2e, and its edge (S,)."""
+    if line is None:
+        return np.concatenate([xy[ends[:, 0]], xy[ends[:, 1]]], axis=1), np.arange(len(ends), dtype=np.int32)
+    pieces = np.concatenate([line[:-1], line[1:]], axis=1)
+    keep = np.ones(len(pieces), np.bool_)
+    keep[start[1:-1] - 1] = False
+    edge = np.repeat(np.arange(len(ends), dtype=np.int32), np.diff(start))[:-1]
+    return pieces[keep], edge[keep]
+
+
+def _with_tether_names(names: Names, extra: int) -> Names:
+    if names.are_rows:
+        return Names("edge", names.size + extra)
+    taken = set(names)
+    fresh = (f"tether{i}" for i in range(extra + len(taken)))
+    return Names("edge", names.size + extra, [*names, *[n for n in fresh if n not in taken][:extra]])

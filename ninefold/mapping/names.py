@@ -1,0 +1,115 @@
+"""Labels of vertices and edges: unique strings, or the row numbers when nothing better is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from ninefold.errors import BadInput, UnknownName
+
+__all__ = ["Names"]
+
+
+class Names(Sequence[str]):
+    """An immutable sequence of unique labels that can be looked up both ways.
+
+    Row numbers ("0", "1", ...) take no memory: a map with a million edges keeps no million strings.
+
+    Parameters
+    ----------
+    kind
+        "vertex" or "edge", for messages.
+    size
+        How many there are.
+    labels
+        The labels, or None for row numbers. Integers are accepted and become strings.
+
+    Examples
+    --------
+    >>> names = Names("vertex", 3, ["hall", "yard", 7])
+    >>> names[2], names.row("yard"), Names("edge", 10).row(4)
+    ('7', 1, 4)
+    """
+
+    __slots__ = ("_labels", "_rows", "kind", "size")
+
+    def __init__(self, kind: str, size: int, labels: Iterable[str | int] | None = None) -> None:
+        self.kind = kind
+        self.size = size
+        self._labels: tuple[str, ...] | None = None
+        self._rows: dict[str, int] | None = None
+        if labels is not None:
+            given = tuple(_label(kind, label) for label in labels)
+            if len(given) != size:
+                raise BadInput(f"{len(given)} {kind} names for {size}; give one each, or none")
+            rows = {label: row for row, label in enumerate(given)}
+            if len(rows) != size:
+                twice = next(label for row, label in enumerate(given) if rows[label] != row)
+                raise BadInput(f"the {kind} name {twice!r} is given twice; names must be unique")
+            self._labels, self._rows = given, rows
+
+    @property
+    def are_rows(self) -> bool:
+        """Whether the labels are the row numbers."""
+        return self._labels is None
+
+    def row(self, label: str | int) -> int:
+        """Return the row of a label.
+
+        Raises
+        ------
+        UnknownName
+            With near labels, if there is no such label.
+        """
+        text = str(label)
+        if self._rows is not None:
+            found = self._rows.get(text)
+            if found is not None:
+                return found
+        elif text.isascii() and text.isdecimal() and str(int(text)) == text and int(text) < self.size:
+            return int(text)
+        raise UnknownName(self.kind, text, self if self.size <= 20_000 else ())
+
+    def __contains__(self, label: object) -> bool:
+        try:
+            self.row(label)  # type: ignore[arg-type]
+        except UnknownName:
+            return False
+        return True
+
+    def __getitem__(self, row: int) -> str:  # type: ignore[override]
+        if self._labels is not None:
+            return self._labels[row]
+        if not 0 <= row < self.size:
+            raise IndexError(row)
+        return str(row)
+
+    def __len__(self) -> int:
+        return self.size
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._labels) if self._labels is not None else map(str, range(self.size))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Names):
+            return NotImplemented
+        if self.size != other.size:
+            return False
+        if self._labels is None and other._labels is None:
+            return True
+        return tuple(self) == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash((self.kind, self.size))
+
+    def __repr__(self) -> str:
+        shown = ", ".join(list(self)[:4]) if self.size <= 4 else f"{self[0]}, {self[1]}, ... {self[self.size - 1]}"
+        return f"Names({self.kind}: {shown})"
+
+
+def _label(kind: str, label: str | int) -> str:
+    if isinstance(label, bool) or not isinstance(label, str | int):
+        raise BadInput(f"a {kind} name is a string, not {label!r}")
+    text = str(label)
+    if not text or any(ord(c) < 32 for c in text):
+        raise BadInput(f"a {kind} name is printable text, not {label!r}")
+    return text

@@ -1,0 +1,500 @@
+"""The plane map: a connected graph embedded in the plane, up to homeomorphism, without coordinates.
+
+Dart ``d`` is a directed half of edge ``d // 2``; ``twin(d) = d ^ 1``. Everything is counter-clockwise, and a face lies on
+the LEFT of its darts. Faces are the orbits of ``d -> previous-ccw(twin d)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ninefold.errors import BadInput, NotPlane
+
+from . import checks
+from .containment import ContainmentIndex
+from .names import Names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from .heading import Heading
+    from .sets import Line, Point, Region
+
+__all__ = ["PlaneMap"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlaneMap:
+    """A plane map: rotation system plus outer face. Immutable; make one with a ``from_*`` constructor or a `Mapper`.
+
+    Attributes
+    ----------
+    tail
+        (2E,) int32, vertex where the dart starts. E counts tethers here.
+    next_ccw
+        (2E,) int32, next dart counter-clockwise around the tail: the rotation system.
+    outer
+        A dart with the outer face on its left, -1 for a map with no edge.
+    tether
+        (E,) bool, true for a virtual edge that ties a separate component to the face that hosts it. Tethers belong to no
+        set and are counted nowhere but in Euler's formula.
+    heading, turn
+        (2E,) float64 yaw in radians on leaving along the dart, and (E,) float64 net rotation in radians along dart 2e,
+        both counter-clockwise and NaN on tethers; or None, None.
+    vertex_names, edge_names
+        Unique labels; edge names cover the E edges, tethers included (which nobody asks for).
+
+    Examples
+    --------
+    >>> from ninefold.mapping import PlaneMap
+    >>> theta = PlaneMap.from_rotation(
+    ...     {"a": [("b", "low"), ("b", "mid"), ("b", "high")], "b": [("a", "high"), ("a", "mid"), ("a", "low")]},
+    ...     outer=("b", "a", "low"))
+    >>> theta
+    PlaneMap(2 vertices, 3 edges, 3 faces)
+    >>> theta.cycle(edges=["low", "mid"])
+    Region(1 face, boundary @low @mid)
+    """
+
+    tail: NDArray[np.int32]
+    next_ccw: NDArray[np.int32]
+    outer: int
+    tether: NDArray[np.bool_]
+    heading: NDArray[np.float64] | None
+    turn: NDArray[np.float64] | None
+    vertex_names: Names
+    edge_names: Names
+    _derived: checks.Derived = field(repr=False)
+
+    # -- constructors ------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def from_darts(
+        cls,
+        tail: ArrayLike,
+        next_ccw: ArrayLike,
+        outer: int | None = None,
+        *,
+        n_vertices: int | None = None,
+        tether: ArrayLike | None = None,
+        heading: ArrayLike | None = None,
+        turn: ArrayLike | None = None,
+        vertex_names: Iterable[str | int] | None = None,
+        edge_names: Iterable[str | int] | None = None,
+    ) -> PlaneMap:
+        """Make a map from dart arrays, checking everything.
+
+        Parameters
+        ----------
+        tail, next_ccw
+            (2E,) integers: start vertex and next dart counter-clockwise around it.
+        outer
+            A dart with the outer face on its left. May be left out for a tree, and where `heading` and `turn` are given:
+            the turning numbers tell.
+        n_vertices
+            Needed only for a map with no edge; otherwise ``max(tail) + 1``.
+        tether
+            (E,) bool; the tethers must join the components of the rest like a tree.
+        heading, turn
+            (2E,) yaw on leaving and (E,) net rotation, radians counter-clockwise. Both or neither.
+
+        Raises
+        ------
+        BadInput
+            For arrays of wrong shape or range, a permutation that is no rotation, or a map that is not connected.
+        NotPlane
+            For a rotation of positive genus, or headings that no plane drawing has.
+
+        Notes
+        -----
+        Complexity O(V + E).
+        """
+        tails = _ints("tail", tail)
+        after = _ints("next_ccw", next_ccw)
+        if tails.size % 2 or after.size != tails.size:
+            raise BadInput(
+                f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge"
+            )
+        n_edges = tails.size // 2
+        total = int(tails.max()) + 1 if tails.size else 0
+        count = total if n_vertices is None else int(n_vertices)
+        if count < max(total, 1) or (tails.size and int(tails.min()) < 0):
+            raise BadInput(
+                "a map has at least one vertex, and tails are numbered from 0 to n_vertices - 1: "
+                f"got n_vertices = {count} and tails up to {total - 1}"
+            )
+        if tails.size and (int(after.min()) < 0 or int(after.max()) >= tails.size):
+            raise BadInput(f"next_ccw must hold darts from 0 to {tails.size - 1}")
+        virtual = np.zeros(n_edges, np.bool_) if tether is None else np.array(tether, dtype=np.bool_)
+        if virtual.shape != (n_edges,):
+            raise BadInput(f"tether has shape {virtual.shape}, not ({n_edges},)")
+        v_names = vertex_names if isinstance(vertex_names, Names) else Names("vertex", count, vertex_names)
+        e_names = edge_names if isinstance(edge_names, Names) else Names("edge", n_edges, edge_names)
+        if (v_names.size, e_names.size) != (count, n_edges):
+            raise BadInput(f"{v_names.size} vertex and {e_names.size} edge names for {count} and {n_edges}")
+        angles = _angles(heading, turn, virtual)
+        derived = checks.derive(tails, after, v_names, e_names)
+        if derived.n_components != 1:
+            apart = int(np.flatnonzero(derived.component != 0)[0])
+            raise BadInput(
+                f"the map has {derived.n_components} components ({v_names[apart]!r} is not connected to {v_names[0]!r}), "
+                "so which face hosts which is not determined; tie them with tethers, or build from geometry"
+            )
+        components = np.zeros(count, np.int32)
+        if virtual.any():
+            components = _components_without(tails, after, virtual, derived)
+        outer_dart = _outer(outer, angles, tails, after, virtual, components, derived, e_names)
+        head, turns = angles if angles is not None else (None, None)
+        for array in (tails, after, virtual, head, turns):
+            if array is not None:
+                array.setflags(write=False)
+        return cls(tails, after, outer_dart, virtual, head, turns, v_names, e_names, derived)
+
+    @classmethod
+    def from_rotation(
+        cls,
+        rotation: Mapping[str | int, Sequence[Any]],
+        *,
+        outer: Sequence[str | int] | int | None = None,
+    ) -> PlaneMap:
+        """Make a map from each vertex's neighbours in counter-clockwise order; see `ninefold.mapping.rotation`."""
+        from .rotation import from_rotation
+
+        return from_rotation(rotation, outer=outer)
+
+    @classmethod
+    def from_geometry(
+        cls,
+        points: ArrayLike,
+        edges: ArrayLike,
+        paths: Sequence[ArrayLike | None] | None = None,
+        *,
+        vertex_names: Iterable[str | int] | None = None,
+        edge_names: Iterable[str | int] | None = None,
+    ) -> PlaneMap:
+        """Make a map from coordinates, which are then dropped; see `ninefold.mapping.geometry`."""
+        from .geometry import from_geometry
+
+        return from_geometry(points, edges, paths, vertex_names=vertex_names, edge_names=edge_names)
+
+    @classmethod
+    def from_networkx(cls, graph: Any, *, outer: Sequence[Any] | None = None) -> PlaneMap:
+        """Make a map from a ``networkx.PlanarEmbedding`` (clockwise, converted); see `ninefold.mapping.graphs`."""
+        from .graphs import from_networkx
+
+        return from_networkx(graph, outer=outer)
+
+    def to_networkx(self, kind: str = "multigraph") -> Any:
+        """Export as ``"multigraph"`` or ``"embedding"``; see `ninefold.mapping.graphs`."""
+        from .graphs import to_networkx
+
+        return to_networkx(self, kind)
+
+    # -- counts and derived arrays ------------------------------------------------------------------------------------
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices."""
+        return self.vertex_names.size
+
+    @cached_property
+    def n_edges(self) -> int:
+        """Number of edges, tethers not counted."""
+        return int(self.tether.size - np.count_nonzero(self.tether))
+
+    @property
+    def n_faces(self) -> int:
+        """Number of faces, the outer one counted."""
+        return self._derived.n_faces
+
+    @property
+    def n_components(self) -> int:
+        """Number of connected components once the tethers are taken away."""
+        return int(np.count_nonzero(self.tether)) + 1
+
+    @property
+    def face_of(self) -> NDArray[np.int32]:
+        """(2E,) int32, the face on each dart's left, numbered by its lowest dart."""
+        return self._derived.face_of
+
+    @property
+    def next_face(self) -> NDArray[np.int32]:
+        """(2E,) int32, the next dart of the face on the left: previous-ccw of the twin."""
+        return self._derived.next_face
+
+    @property
+    def rank(self) -> NDArray[np.int32]:
+        """(2E,) int32, place of the dart in the rotation of its tail, counted from the vertex's lowest dart."""
+        return self._derived.rank
+
+    @property
+    def first_dart(self) -> NDArray[np.int32]:
+        """(V,) int32, the lowest dart of each vertex, -1 for the only vertex of a map with no edge."""
+        return self._derived.first
+
+    @property
+    def outer_face(self) -> int:
+        """The number of the outer face."""
+        return int(self.face_of[self.outer]) if self.outer >= 0 else 0
+
+    @cached_property
+    def spokes(self) -> NDArray[np.int32]:
+        """(V,) int32, darts at each vertex, those of tethers included: the length of its rotation."""
+        return np.bincount(self.tail, minlength=self.n_vertices).astype(np.int32)
+
+    @cached_property
+    def degree(self) -> NDArray[np.int32]:
+        """(V,) int32, degree of each vertex; a loop counts twice, a tether not at all."""
+        real = self.tail[~np.repeat(self.tether, 2)]
+        return np.bincount(real, minlength=self.n_vertices).astype(np.int32)
+
+    @cached_property
+    def containment(self) -> ContainmentIndex:
+        """The containment index, built at first use in O(E)."""
+        return ContainmentIndex.build(
+            self.next_face, self.face_of, self._derived.in_tree, self.outer, self.n_faces
+        )
+
+    def darts_at(self, vertex: int) -> list[int]:
+        """Return the darts that leave a vertex (by number), counter-clockwise from its lowest, tethers included."""
+        start = int(self.first_dart[vertex])
+        if start < 0:
+            return []
+        darts = [start]
+        d = int(self.next_ccw[start])
+        while d != start:
+            darts.append(d)
+            d = int(self.next_ccw[d])
+        return darts
+
+    def face_darts(self, face: int) -> list[int]:
+        """Return the darts of the walk around a face, the lowest first; tethers included."""
+        if self.outer < 0:
+            return []
+        start = int(self._face_first[face])
+        darts = [start]
+        d = int(self.next_face[start])
+        while d != start:
+            darts.append(d)
+            d = int(self.next_face[d])
+        return darts
+
+    @cached_property
+    def _face_first(self) -> NDArray[np.int64]:
+        return checks.first_darts(self.face_of, self.n_faces)
+
+    # -- sets ----------------------------------------------------------------------------------------------------------
+
+    def vertex(self, name: str | int) -> Point:
+        """Return the vertex of that name as a `Point`."""
+        from .sets import Point
+
+        return Point(self, self.vertex_names.row(name))
+
+    def edge(self, *names: str | int) -> Line:
+        """Return one edge: ``edge("e7")`` or ``edge("@e7")`` by its own name, ``edge("v1", "v3")`` by its ends."""
+        from . import select
+
+        return select.edge(self, names)
+
+    def path(self, steps: Iterable[str | int]) -> Line:
+        """Return the path along vertices and ``@edge`` steps; no edge twice, and it may close."""
+        from . import select
+
+        return select.path(self, steps)
+
+    def line(self, edges: Iterable[str | int]) -> Line:
+        """Return any set of edges, given by name, as one `Line`: branching, closed or in pieces."""
+        from . import select
+
+        return select.line(self, edges)
+
+    def cycle(self, steps: Iterable[str | int] | None = None, *, edges: Iterable[str | int] | None = None) -> Region:
+        """Return the interior of a simple cycle, given in either direction by vertices and ``@edge`` steps, or by edges."""
+        from . import select
+
+        return select.cycle(self, steps, edges)
+
+    def face(self, face: int) -> Region:
+        """Return one bounded face, by its number in `face_of`, as a `Region`."""
+        from . import select
+
+        return select.region(self, [face])
+
+    def region(self, faces: Iterable[int]) -> Region:
+        """Return the union of bounded faces as a regular closed `Region`; holes and several parts are allowed."""
+        from . import select
+
+        return select.region(self, faces)
+
+    def parse(self, text: str) -> Point | Line | Region:
+        """Return the set that a text names, such as ``cycle:v0,v1,v8,v7`` or ``edge:@e7``; see `select.parse`."""
+        from . import select
+
+        return select.parse(self, text)
+
+    def heading_of(self, dart: int) -> Heading:
+        """Return the heading on leaving along a dart."""
+        from .heading import Heading
+
+        if self.heading is None or np.isnan(self.heading[dart]):
+            raise BadInput(f"dart {dart} has no heading: the map was made without, or it is a tether")
+        return Heading(float(self.heading[dart]))
+
+    # -- checks and comparison -----------------------------------------------------------------------------------------
+
+    def validate(self) -> None:
+        """Recompute every derived thing from the stored arrays and compare; raise if anything differs.
+
+        Raises
+        ------
+        NinefoldError
+            If the map is not what its constructors promise. Complexity O(E).
+        """
+        again = PlaneMap.from_darts(
+            self.tail,
+            self.next_ccw,
+            self.outer if self.outer >= 0 else None,
+            n_vertices=self.n_vertices,
+            tether=self.tether,
+            heading=self.heading,
+            turn=self.turn,
+            vertex_names=self.vertex_names,
+            edge_names=self.edge_names,
+        )
+        same = (
+            np.array_equal(again.face_of, self.face_of)
+            and np.array_equal(again.next_face, self.next_face)
+            and np.array_equal(again.rank, self.rank)
+            and again.n_faces == self.n_faces
+            and self.n_vertices - self.tether.size + self.n_faces == 2
+        )
+        if not same:
+            raise NotPlane("a derived array of this map differs from what its darts give")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PlaneMap):
+            return NotImplemented
+        if self is other:
+            return True
+        return (
+            self.outer_face == other.outer_face
+            and np.array_equal(self.tail, other.tail)
+            and np.array_equal(self.next_ccw, other.next_ccw)
+            and np.array_equal(self.tether, other.tether)
+            and _same(self.heading, other.heading)
+            and _same(self.turn, other.turn)
+            and self.vertex_names == other.vertex_names
+            and self.edge_names == other.edge_names
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.n_vertices, self.tail.tobytes(), self.next_ccw.tobytes()))
+
+    def __repr__(self) -> str:
+        parts = [
+            _count(self.n_vertices, "vertex", "vertices"),
+            _count(self.n_edges, "edge", "edges"),
+            _count(self.n_faces, "face", "faces"),
+        ]
+        if self.n_components > 1:
+            parts.append(f"{self.n_components} components")
+        return f"PlaneMap({', '.join(parts)})"
+
+
+def _count(number: int, one: str, many: str) -> str:
+    return f"{number} {one if number == 1 else many}"
+
+
+def _same(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return bool(np.array_equal(a, b, equal_nan=True))
+
+
+def _ints(name: str, values: ArrayLike) -> NDArray[np.int32]:
+    array = np.asarray(values)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
+        raise BadInput(f"{name} must be a one-dimensional array of integers, not {array.dtype} of shape {array.shape}")
+    if array.size and (int(array.max()) > 2**31 - 1 or int(array.min()) < -(2**31)):
+        raise BadInput(f"{name} holds numbers beyond 32 bits")
+    return np.array(array, dtype=np.int32)
+
+
+def _angles(
+    heading: ArrayLike | None, turn: ArrayLike | None, tether: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    if heading is None and turn is None:
+        return None
+    if heading is None or turn is None:
+        raise BadInput("heading and turn come together: give both or neither")
+    head, turns = np.array(heading, dtype=np.float64), np.array(turn, dtype=np.float64)
+    if head.shape != (2 * tether.size,) or turns.shape != (tether.size,):
+        raise BadInput(
+            f"heading has shape {head.shape} and turn {turns.shape}; for {tether.size} edges they are "
+            f"({2 * tether.size},) and ({tether.size},)"
+        )
+    head[np.repeat(tether, 2)] = np.nan
+    turns[tether] = np.nan
+    if not (np.isfinite(head[~np.repeat(tether, 2)]).all() and np.isfinite(turns[~tether]).all()):
+        raise BadInput("heading and turn must be finite radians")
+    return head, turns
+
+
+def _components_without(
+    tail: NDArray[np.int32], next_ccw: NDArray[np.int32], tether: NDArray[np.bool_], derived: checks.Derived
+) -> NDArray[np.int32]:
+    """Component of each vertex once tethers are gone; they must have joined the components like a tree."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    real = np.flatnonzero(~tether)
+    n = derived.component.size
+    links = coo_array((np.ones(real.size, np.int8), (tail[2 * real], tail[2 * real + 1])), shape=(n, n))
+    count, component = connected_components(links, directed=False)
+    if count - 1 != int(tether.sum()):
+        raise BadInput(
+            f"{int(tether.sum())} tethers for {count} components: tethers must be bridges, one fewer than components"
+        )
+    return np.asarray(component, dtype=np.int32)
+
+
+def _outer(
+    outer: int | None,
+    angles: tuple[NDArray[np.float64], NDArray[np.float64]] | None,
+    tail: NDArray[np.int32],
+    next_ccw: NDArray[np.int32],
+    tether: NDArray[np.bool_],
+    component: NDArray[np.int32],
+    derived: checks.Derived,
+    edge_names: Names,
+) -> int:
+    """Settle the outer dart: from the turning numbers, from the argument, or because there is one face only."""
+    if tail.size == 0:
+        if outer not in (None, -1):
+            raise BadInput(f"outer is dart {outer}, but the map has no edge; leave it out")
+        return -1
+    if outer is not None and not 0 <= outer < tail.size:
+        raise BadInput(f"outer is dart {outer}, and darts are numbered from 0 to {tail.size - 1}")
+    if angles is not None and not tether.all():
+        walks = checks.component_walks(tail, next_ccw, tether, *angles, component, derived, edge_names)
+        found = checks.outer_dart(walks, derived)
+        if outer is not None and derived.face_of[outer] != derived.face_of[found]:
+            raise NotPlane(
+                f"outer is given on the left of dart {outer}, but by the headings the outer face is on the left of "
+                f"dart {found} (edge {edge_names[found >> 1]!r})"
+            )
+        return found if outer is None else int(outer)
+    if outer is None:
+        if derived.n_faces > 1:
+            raise BadInput(
+                f"the map has {derived.n_faces} faces and no headings; say which is the outer one (a dart with it on the left)"
+            )
+        return 0
+    return int(outer)

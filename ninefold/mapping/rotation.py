@@ -1,0 +1,162 @@
+"""Plane maps from rotation systems written by hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ninefold.errors import AmbiguousDart, BadInput, UnknownName
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from .plane import PlaneMap
+
+__all__ = ["from_rotation"]
+
+Entry = tuple[str, str | None]
+
+
+def from_rotation(
+    rotation: Mapping[str | int, Sequence[Any]], *, outer: Sequence[str | int] | int | None = None
+) -> PlaneMap:
+    """Make a plane map from each vertex's neighbours, counter-clockwise.
+
+    Parameters
+    ----------
+    rotation
+        Vertex name to its neighbours in counter-clockwise order. Where edges are parallel or loops, an entry is a pair
+        ``(neighbour, edge name)``; a loop has two entries at its vertex, of which the first is its forward dart.
+    outer
+        A dart with the outer face on its left: ``("a", "b")`` leaves a for b; ``("a", "b", "e1")`` names the edge too; an
+        int is a dart number, and edge e has darts 2e (from where it is mentioned first) and 2e + 1. May be left out when
+        there is one face.
+
+    Raises
+    ------
+    BadInput, AmbiguousDart, UnknownName
+        For an edge mentioned once or three times, an unnamed parallel edge, an unknown neighbour.
+    NotPlane
+        With the genus and a shortest offending part.
+
+    Notes
+    -----
+    Edges are numbered, and if unnamed named, in the order of first mention. Complexity O(V + E).
+
+    Examples
+    --------
+    >>> from ninefold.mapping import PlaneMap
+    >>> PlaneMap.from_rotation({"a": ["b"], "b": ["a", "c"], "c": ["b"]})
+    PlaneMap(3 vertices, 2 edges, 1 face)
+    >>> PlaneMap.from_rotation({"a": [("a", "ring"), ("a", "ring")]}, outer=1)
+    PlaneMap(1 vertex, 1 edge, 2 faces)
+    """
+    from .plane import PlaneMap
+
+    names = [str(vertex) for vertex in rotation]
+    row = {name: at for at, name in enumerate(names)}
+    if len(row) != len(names):
+        raise BadInput("two vertices have the same name once integers are read as strings")
+    ends: dict[tuple[frozenset[int], str | None], list[tuple[int, int]]] = {}
+    stars: list[list[int]] = []
+    labels: list[str | None] = []
+    tail: list[int] = []
+    for u, (vertex, entries) in enumerate(rotation.items()):
+        if isinstance(entries, str):
+            raise BadInput(f"the neighbours of {vertex!r} are a string; give a list of names")
+        star: list[int] = []
+        for entry in entries:
+            other, label = _entry(entry)
+            if other not in row:
+                raise UnknownName("vertex", other, names)
+            key = (frozenset((u, row[other])), label)
+            known = ends.setdefault(key, [])
+            if len(known) == 2:
+                raise BadInput(f"the edge {_show(names[u], other, label)} is mentioned more than twice")
+            if known:
+                e, source = known[0]
+                if source == u and other != names[u]:
+                    raise AmbiguousDart(
+                        f"{names[u]!r} lists {other!r} twice; name parallel edges, as in ({other!r}, 'e1')"
+                    )
+                dart = 2 * e + 1
+            else:
+                e, dart = len(labels), 2 * len(labels)
+                labels.append(label)
+                tail += [u, row[other]]
+            known.append((e, u))
+            star.append(dart)
+        stars.append(star)
+    for (_, label), known in ends.items():
+        if len(known) == 1:
+            e = known[0][0]
+            u, v = names[tail[2 * e]], names[tail[2 * e + 1]]
+            raise BadInput(f"the edge {_show(u, v, label)} is mentioned at {u!r} but not at {v!r}")
+    next_ccw = np.empty(len(tail), np.int64)
+    for star in stars:
+        for at, dart in enumerate(star):
+            next_ccw[dart] = star[(at + 1) % len(star)]
+    edge_names = _edge_names(labels)
+    start = _outer_dart(outer, row, tail, edge_names)
+    return PlaneMap.from_darts(
+        np.array(tail, np.int64),
+        next_ccw,
+        start,
+        n_vertices=len(names),
+        vertex_names=names,
+        edge_names=edge_names,
+    )
+
+
+def _entry(entry: Any) -> Entry:
+    if isinstance(entry, str | int) and not isinstance(entry, bool):
+        return str(entry), None
+    if isinstance(entry, tuple | list) and len(entry) == 2:
+        return str(entry[0]), str(entry[1])
+    raise BadInput(f"{entry!r} is neither a neighbour nor a pair (neighbour, edge name)")
+
+
+def _show(u: str, v: str, label: str | None) -> str:
+    return f"{u!r} - {v!r}" + (f" ({label!r})" if label is not None else "")
+
+
+def _edge_names(labels: list[str | None]) -> list[str] | None:
+    if all(label is None for label in labels):
+        return None
+    taken = {label for label in labels if label is not None}
+    names = []
+    for e, label in enumerate(labels):
+        if label is None:
+            label = str(e)
+            if label in taken:
+                raise BadInput(f"edge {e} has no name, and its number is the name of another edge; name it")
+        names.append(label)
+    return names
+
+
+def _outer_dart(
+    outer: Sequence[str | int] | int | None, row: dict[str, int], tail: list[int], edge_names: list[str] | None
+) -> int | None:
+    if outer is None or isinstance(outer, int):
+        return outer
+    if isinstance(outer, str) or len(outer) not in (2, 3):
+        raise BadInput(f"outer is a dart, (from, to) or (from, to, edge name), not {outer!r}")
+    u, v = (str(name) for name in outer[:2])
+    for name in (u, v):
+        if name not in row:
+            raise UnknownName("vertex", name, row)
+    found = [
+        d
+        for d in range(len(tail))
+        if tail[d] == row[u]
+        and tail[d ^ 1] == row[v]
+        and (len(outer) == 2 or (edge_names[d >> 1] if edge_names else str(d >> 1)) == str(outer[2]))
+    ]
+    if not found:
+        raise BadInput(f"outer = {tuple(outer)!r}: there is no such edge")
+    if len(found) > 1:
+        raise AmbiguousDart(
+            f"outer = {tuple(outer)!r} is one of the darts {found}; add the edge name, or give the dart's number"
+        )
+    return found[0]

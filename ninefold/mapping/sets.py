@@ -1,0 +1,362 @@
+"""Sets of a plane map: points, lines and regions, and their stars.
+
+A `Region` is a union of bounded faces taken as a regular closed set. A `Line` is any set of edges; its boundary is the
+vertices of odd degree in it (the mod-2 rule of a MultiLineString). Vertices, edges and faces outside are its exterior.
+
+**Stars.** Relations are local. The star of a set at a vertex says what the set is in the small disc around it: a bit a
+sector (sector i lies counter-clockwise after the dart of rank i) and a bit a dart. Stars are Python integers, so a vertex
+may have any degree.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from ninefold.errors import BadInput, DifferentMaps, EmptySet
+
+from .containment import ends_of_numbers, numbers_of_ends
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from .plane import PlaneMap
+
+__all__ = ["Line", "Point", "Region", "Set", "same_map"]
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A vertex of a map.
+
+    Attributes
+    ----------
+    plane
+        The map.
+    index
+        The vertex number.
+    """
+
+    plane: PlaneMap = field(repr=False)
+    index: int
+
+    dimension = 0
+
+    @property
+    def name(self) -> str:
+        """The vertex's name."""
+        return self.plane.vertex_names[self.index]
+
+    @property
+    def text(self) -> str:
+        """The text form that `PlaneMap.parse` reads back."""
+        return f"vertex:{self.name}"
+
+    def __repr__(self) -> str:
+        return f"Point({self.name})"
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A set of edges.
+
+    Attributes
+    ----------
+    plane
+        The map.
+    edges
+        Edge numbers, ascending, each once, none a tether.
+    darts
+        The darts in order where the line was made as a path, else None. Two lines with the same edges are equal.
+    """
+
+    plane: PlaneMap = field(repr=False)
+    edges: tuple[int, ...]
+    darts: tuple[int, ...] | None = None
+
+    dimension = 1
+
+    @cached_property
+    def star(self) -> dict[int, int]:
+        """Vertex to the mask of its darts (by rank) that lie in the line, for every vertex of the line."""
+        tail, rank = self.plane.tail, self.plane.rank
+        star: dict[int, int] = {}
+        darts = np.array(self.edges, np.int64)[:, None] * 2 + np.array([0, 1])
+        for v, r in zip(tail[darts].ravel().tolist(), rank[darts].ravel().tolist(), strict=True):
+            star[v] = star.get(v, 0) | 1 << r
+        return star
+
+    @cached_property
+    def boundary(self) -> frozenset[int]:
+        """The vertices of odd degree in the line."""
+        return frozenset(v for v, darts in self.star.items() if darts.bit_count() % 2)
+
+    @property
+    def vertices(self) -> frozenset[int]:
+        """Every vertex of the line, boundary or not."""
+        return frozenset(self.star)
+
+    @cached_property
+    def edge_set(self) -> frozenset[int]:
+        """The edges as a set."""
+        return frozenset(self.edges)
+
+    @cached_property
+    def pieces(self) -> tuple[frozenset[int], ...]:
+        """The vertex sets of the connected pieces, by lowest vertex."""
+        return _pieces(self.plane, [2 * e for e in self.edges])
+
+    @property
+    def edge_names(self) -> tuple[str, ...]:
+        """The names of the edges; in order along the way where the line was made as a path."""
+        order = self.edges if self.darts is None else [d >> 1 for d in self.darts]
+        return tuple(self.plane.edge_names[e] for e in order)
+
+    @property
+    def text(self) -> str:
+        """The text form that `PlaneMap.parse` reads back (not where a name has a comma: use lists then)."""
+        return "line:" + ",".join(f"@{name}" for name in self.edge_names)
+
+    def __or__(self, other: Line) -> Line:
+        """Return the union of two lines of one map."""
+        if not isinstance(other, Line):
+            return NotImplemented
+        same_map(self, other)
+        return Line(self.plane, tuple(sorted(self.edge_set | other.edge_set)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Line):
+            return NotImplemented
+        return self.edges == other.edges and _one_map(self.plane, other.plane)
+
+    def __hash__(self) -> int:
+        return hash(self.edges)
+
+    def __repr__(self) -> str:
+        return f"Line({_shorten([f'@{name}' for name in self.edge_names])})"
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A union of bounded faces as a regular closed set; make one with `PlaneMap.cycle`, `face` or `region`.
+
+    Attributes
+    ----------
+    plane
+        The map.
+    ends
+        Sorted int32 interval ends over the preorder numbers of `PlaneMap.containment`: a face is inside when an odd number
+        of ends is at most its number. 2 ends an interval.
+    darts
+        (k,) int64, ascending: the boundary darts, the region on their left.
+    """
+
+    plane: PlaneMap = field(repr=False)
+    ends: NDArray[np.int32]
+    darts: NDArray[np.int64]
+
+    dimension = 2
+
+    @classmethod
+    def from_ends(cls, plane: PlaneMap, ends: NDArray[np.int32], candidates: NDArray[np.int64]) -> Region:
+        """Make the region of these interval ends, whose boundary edges are among the `candidates` (edge numbers)."""
+        both = np.concatenate([2 * candidates, 2 * candidates + 1])
+        left = _inside(plane, ends, plane.face_of[both])
+        right = _inside(plane, ends, plane.face_of[both ^ 1])
+        darts = np.sort(both[left & ~right])
+        ends.setflags(write=False)
+        darts.setflags(write=False)
+        return cls(plane, ends, darts)
+
+    @classmethod
+    def from_faces(cls, plane: PlaneMap, faces: Iterable[int]) -> Region:
+        """Make the union of bounded faces, given by number. O(E) for the boundary."""
+        numbers = np.unique(np.fromiter(faces, dtype=np.int64))
+        if not numbers.size:
+            raise EmptySet("a region needs at least one face")
+        if int(numbers[0]) < 0 or int(numbers[-1]) >= plane.n_faces:
+            raise BadInput(f"faces are numbered from 0 to {plane.n_faces - 1}; got {int(numbers[-1])}")
+        if plane.outer_face in numbers:
+            raise BadInput(f"face {plane.outer_face} is the outer face, which is not bounded; a region has bounded faces")
+        ends = ends_of_numbers(plane.containment.preorder[numbers])
+        inside = np.zeros(plane.n_faces, np.bool_)
+        inside[numbers] = True
+        left = inside[plane.face_of]
+        edges = np.flatnonzero(left[0::2] != left[1::2])
+        return cls.from_ends(plane, ends, edges)
+
+    def has_face(self, face: int) -> bool:
+        """Say whether a face is in the region: one binary search."""
+        return bool(bisect_right(self._ends, int(self.plane.containment.preorder[face])) & 1)
+
+    @cached_property
+    def _ends(self) -> list[int]:
+        return self.ends.tolist()  # type: ignore[no-any-return]
+
+    @cached_property
+    def faces(self) -> tuple[int, ...]:
+        """The faces inside, ascending. O(area)."""
+        return tuple(sorted(self.plane.containment.face_at[numbers_of_ends(self.ends)].tolist()))
+
+    @property
+    def n_faces(self) -> int:
+        """The number of faces inside."""
+        return int((self.ends[1::2] - self.ends[0::2]).sum())
+
+    @cached_property
+    def edge_set(self) -> frozenset[int]:
+        """The boundary edges."""
+        return frozenset((self.darts >> 1).tolist())
+
+    @cached_property
+    def boundary(self) -> Line:
+        """The boundary as a line."""
+        return Line(self.plane, tuple(sorted(self.edge_set)))
+
+    @cached_property
+    def star(self) -> dict[int, tuple[int, int]]:
+        """Boundary vertex to (sectors inside, boundary darts), both masks by rank."""
+        plane = self.plane
+        twins = self.darts ^ 1
+        star: dict[int, tuple[int, int]] = {}
+        low: dict[int, tuple[int, bool]] = {}  # the boundary dart of lowest rank, and whether it leaves
+        for darts, leaves in ((self.darts, True), (twins, False)):
+            for v, r in zip(plane.tail[darts].tolist(), plane.rank[darts].tolist(), strict=True):
+                # below r, toggled: in the end a sector is set when an odd number of boundary darts lies above it
+                sectors, curve = star.get(v, (0, 0))
+                star[v] = sectors ^ ((1 << r) - 1), curve | 1 << r
+                if v not in low or r < low[v][0]:
+                    low[v] = r, leaves
+        for v, (_, leaves) in low.items():
+            if not leaves:  # the sectors before the first boundary dart are inside, so the count is off by one
+                sectors, curve = star[v]
+                star[v] = sectors ^ ((1 << int(plane.spokes[v])) - 1), curve
+        return star
+
+    @cached_property
+    def rims(self) -> tuple[frozenset[int], ...]:
+        """The vertex sets of the connected parts of the boundary, by lowest vertex."""
+        return _pieces(self.plane, self.darts.tolist())
+
+    @cached_property
+    def rim_darts(self) -> tuple[int, ...]:
+        """One boundary dart for each of `rims`."""
+        at = {int(self.plane.tail[d]): d for d in reversed(self.darts.tolist())}
+        return tuple(at[min(rim)] for rim in self.rims)
+
+    def left_of(self, path: Line) -> Region:
+        """Return the part of the region on the left of a path that splits it."""
+        from .split import split
+
+        return split(self, path)[0]
+
+    def right_of(self, path: Line) -> Region:
+        """Return the part of the region on the right of a path that splits it."""
+        from .split import split
+
+        return split(self, path)[1]
+
+    @property
+    def text(self) -> str:
+        """The text form that `PlaneMap.parse` reads back on this very map: face numbers live as long as the map."""
+        return "faces:" + ",".join(map(str, self.faces))
+
+    def __or__(self, other: Region) -> Region:
+        """Return the union."""
+        return self._combine(other, lambda a, b: a | b, "union")
+
+    def __and__(self, other: Region) -> Region:
+        """Return the intersection of the interiors, closed; an error if they share no face."""
+        return self._combine(other, lambda a, b: a & b, "intersection")
+
+    def __sub__(self, other: Region) -> Region:
+        """Return the faces of this region that are not in the other; an error if none is left."""
+        return self._combine(other, lambda a, b: a & ~b, "difference")
+
+    def _combine(self, other: Region, rule: object, word: str) -> Region:
+        if not isinstance(other, Region):
+            return NotImplemented
+        same_map(self, other)
+        cuts = np.unique(np.concatenate([self.ends, other.ends]))
+        mine = (np.searchsorted(self.ends, cuts, side="right") & 1).astype(np.bool_)
+        its = (np.searchsorted(other.ends, cuts, side="right") & 1).astype(np.bool_)
+        kept = rule(mine, its)  # type: ignore[operator]
+        ends = cuts[np.flatnonzero(np.diff(kept, prepend=False))].astype(np.int32)
+        if not ends.size:
+            raise EmptySet(f"the {word} of {self!r} and {other!r} is empty: there is no such region")
+        edges = np.union1d(self.darts >> 1, other.darts >> 1)
+        return Region.from_ends(self.plane, ends, edges)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Region):
+            return NotImplemented
+        return np.array_equal(self.ends, other.ends) and _one_map(self.plane, other.plane)
+
+    def __hash__(self) -> int:
+        return hash(self.ends.tobytes())
+
+    def __repr__(self) -> str:
+        count = self.n_faces
+        names = [f"@{self.plane.edge_names[e]}" for e in self.boundary.edges]
+        return f"Region({count} face{'' if count == 1 else 's'}, boundary {_shorten(names)})"
+
+
+Set: TypeAlias = Point | Line | Region
+
+
+def same_map(first: Set, *others: Set) -> PlaneMap:
+    """Return the one map that the sets belong to.
+
+    Raises
+    ------
+    DifferentMaps
+        If they belong to two.
+    """
+    for other in others:
+        if not _one_map(first.plane, other.plane):
+            raise DifferentMaps(
+                f"{first!r} and {other!r} are sets of two different maps, {first.plane!r} and {other.plane!r}; "
+                "relations are between sets of one map"
+            )
+    return first.plane
+
+
+def _one_map(a: PlaneMap, b: PlaneMap) -> bool:
+    return a is b or a == b
+
+
+def _inside(plane: PlaneMap, ends: NDArray[np.int32], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    numbers = plane.containment.preorder[faces]
+    return (np.searchsorted(ends, numbers, side="right") & 1).astype(np.bool_)
+
+
+def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]:
+    """Vertex sets of the connected pieces of a few edges, by union-find."""
+    parent: dict[int, int] = {}
+
+    def find(v: int) -> int:
+        while parent.setdefault(v, v) != v:
+            parent[v] = parent[parent[v]]
+            v = parent[v]
+        return v
+
+    ends = np.array(darts, np.int64)
+    for u, v in zip(plane.tail[ends].tolist(), plane.tail[ends ^ 1].tolist(), strict=True):
+        a, b = find(u), find(v)
+        if a != b:
+            parent[max(a, b)] = min(a, b)
+    pieces: dict[int, set[int]] = {}
+    for v in parent:
+        pieces.setdefault(find(v), set()).add(v)
+    return tuple(frozenset(pieces[root]) for root in sorted(pieces))
+
+
+def _shorten(names: Sequence[str]) -> str:
+    return " ".join(names) if len(names) <= 6 else f"{' '.join(names[:4])} ... ({len(names)} edges)"
+
