@@ -21,9 +21,6 @@ A kernel takes arrays and numbers only, allocates its results with numpy, and ca
 from __future__ import annotations
 
 import functools
-import os
-import tempfile
-from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 __all__ = ["COMPILE_ABOVE", "Kernel", "kernel"]

@@ -50,9 +50,7 @@ class Derived:
     n_components: int
 
 
-def derive(
-    tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: Names, edge_names: Names
-) -> Derived:
+def derive(tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: Names, edge_names: Names) -> Derived:
     """Check a rotation system and derive faces and components; genus must be 0 in every component.
 
     Raises
@@ -163,9 +161,7 @@ def component_walks(
             "of the rotation; sort the rotation by heading, or leave the headings out"
         )
     lowest = first_darts(face_of, int(n_faces))
-    turns = face_turns(
-        next_face, face_of, int(n_faces), np.where(real, heading, 0.0), np.where(tether, -np.pi, turn)
-    )
+    turns = face_turns(next_face, face_of, int(n_faces), np.where(real, heading, 0.0), np.where(tether, -np.pi, turn))
     lowest, turns = lowest[real[lowest]], turns[real[lowest]]
     odd = np.flatnonzero(np.abs(turns) != 1)
     if odd.size:

@@ -77,7 +77,7 @@ def odd_values(values: NDArray[np.int32]) -> NDArray[np.int32]:
         return ordered
     first = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
     counts = np.diff(np.append(first, ordered.size))
-    return ordered[first[counts % 2 == 1]]
+    return np.asarray(ordered[first[counts % 2 == 1]], dtype=values.dtype)
 
 
 def ends_of_numbers(numbers: NDArray[np.int32]) -> NDArray[np.int32]:

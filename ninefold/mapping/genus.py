@@ -121,9 +121,7 @@ def _cheapest_crossing(
         if d == start:
             break
     chords = sorted(
-        (depth[tail[2 * e]] + depth[tail[2 * e + 1]] + 1, e, ends[0], ends[1])
-        for e, ends in at.items()
-        if len(ends) == 2
+        (depth[tail[2 * e]] + depth[tail[2 * e + 1]] + 1, e, ends[0], ends[1]) for e, ends in at.items() if len(ends) == 2
     )
     best: tuple[int, int] | None = None
     for i, (length, e, a, b) in enumerate(chords):

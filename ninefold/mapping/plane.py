@@ -118,9 +118,7 @@ class PlaneMap:
         tails = _ints("tail", tail)
         after = _ints("next_ccw", next_ccw)
         if tails.size % 2 or after.size != tails.size:
-            raise BadInput(
-                f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge"
-            )
+            raise BadInput(f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge")
         n_edges = tails.size // 2
         total = int(tails.max()) + 1 if tails.size else 0
         count = total if n_vertices is None else int(n_vertices)
@@ -257,9 +255,7 @@ class PlaneMap:
     @cached_property
     def containment(self) -> ContainmentIndex:
         """The containment index, built at first use in O(E)."""
-        return ContainmentIndex.build(
-            self.next_face, self.face_of, self._derived.in_tree, self.outer, self.n_faces
-        )
+        return ContainmentIndex.build(self.next_face, self.face_of, self._derived.in_tree, self.outer, self.n_faces)
 
     def darts_at(self, vertex: int) -> list[int]:
         """Return the darts that leave a vertex (by number), counter-clockwise from its lowest, tethers included."""
@@ -494,7 +490,7 @@ def _outer(
     if outer is None:
         if derived.n_faces > 1:
             raise BadInput(
-                f"the map has {derived.n_faces} faces and no headings; say which is the outer one (a dart with it on the left)"
+                f"the map has {derived.n_faces} faces and no headings; say which is the outer one: a dart with it on its left"
             )
         return 0
     return int(outer)

@@ -77,9 +77,7 @@ def from_rotation(
             if known:
                 e, source = known[0]
                 if source == u and other != names[u]:
-                    raise AmbiguousDart(
-                        f"{names[u]!r} lists {other!r} twice; name parallel edges, as in ({other!r}, 'e1')"
-                    )
+                    raise AmbiguousDart(f"{names[u]!r} lists {other!r} twice; name parallel edges, as in ({other!r}, 'e1')")
                 dart = 2 * e + 1
             else:
                 e, dart = len(labels), 2 * len(labels)
@@ -90,9 +88,8 @@ def from_rotation(
         stars.append(star)
     for (_, label), known in ends.items():
         if len(known) == 1:
-            e = known[0][0]
-            u, v = names[tail[2 * e]], names[tail[2 * e + 1]]
-            raise BadInput(f"the edge {_show(u, v, label)} is mentioned at {u!r} but not at {v!r}")
+            a, b = (names[v] for v in tail[2 * known[0][0] : 2 * known[0][0] + 2])
+            raise BadInput(f"the edge {_show(a, b, label)} is mentioned at {a!r} but not at {b!r}")
     next_ccw = np.empty(len(tail), np.int64)
     for star in stars:
         for at, dart in enumerate(star):

@@ -58,9 +58,7 @@ def path(plane: PlaneMap, steps: Iterable[str | int]) -> Line:
     return Line(plane, tuple(sorted(d >> 1 for d in darts)), tuple(darts))
 
 
-def cycle(
-    plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iterable[str | int] | None = None
-) -> Region:
+def cycle(plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iterable[str | int] | None = None) -> Region:
     """Return the interior of a simple cycle.
 
     Raises
@@ -164,13 +162,13 @@ def _edge_row(plane: PlaneMap, name: str | int) -> int:
     return row
 
 
-def _darts_between(plane: PlaneMap, u: int, v: int) -> list[int]:
+def darts_between(plane: PlaneMap, u: int, v: int) -> list[int]:
     darts = plane.darts_at(u) if plane.spokes[u] <= plane.spokes[v] else [d ^ 1 for d in plane.darts_at(v)]
     return [d for d in darts if plane.tail[d] == u and plane.tail[d ^ 1] == v and not plane.tether[d >> 1]]
 
 
 def _dart_between(plane: PlaneMap, u: int, v: int) -> int:
-    found = _darts_between(plane, u, v)
+    found = darts_between(plane, u, v)
     edges = sorted({d >> 1 for d in found})
     if not edges:
         raise UnknownName("edge", f"{plane.vertex_names[u]} - {plane.vertex_names[v]}")

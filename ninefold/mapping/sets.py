@@ -359,4 +359,3 @@ def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]
 
 def _shorten(names: Sequence[str]) -> str:
     return " ".join(names) if len(names) <= 6 else f"{' '.join(names[:4])} ... ({len(names)} edges)"
-

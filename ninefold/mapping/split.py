@@ -52,10 +52,8 @@ def split(region: Region, path: Line) -> tuple[Region, Region]:
     )
     _, group = connected_components(links, directed=False)
     darts = np.array(path.darts, np.int64)
-    groups = []
-    for side in (plane.face_of[darts], plane.face_of[darts ^ 1]):
-        groups.append(np.unique(group[side[inside[side]]]))
-    if not (groups[0].size and groups[1].size) or np.intersect1d(*groups).size:
+    on_left, on_right = (np.unique(group[side[inside[side]]]) for side in (plane.face_of[darts], plane.face_of[darts ^ 1]))
+    if not (on_left.size and on_right.size) or np.intersect1d(on_left, on_right).size:
         raise BadInput(f"{path!r} does not split {region!r}: it must run through it from boundary to boundary")
-    parts = [np.flatnonzero(inside & np.isin(group, chosen)).tolist() for chosen in groups]
+    parts = [np.flatnonzero(inside & np.isin(group, chosen)).tolist() for chosen in (on_left, on_right)]
     return Region.from_faces(plane, parts[0]), Region.from_faces(plane, parts[1])

@@ -60,19 +60,22 @@ def tie_components(
 
     free = np.flatnonzero(hosts < 0)
     root = int(free[np.argmax(outer[free] >= 0)])
-    tails, after = tail.tolist(), next_ccw.tolist()
+    size = tail.size
+    tails = np.concatenate([tail, np.empty(2 * (n_components - 1), np.int32)])
+    after = np.concatenate([next_ccw, np.empty(2 * (n_components - 1), np.int32)])
     anchor: dict[int, int] = {}  # isolated vertex -> a tether dart there
 
     def attach(owner: int, dart: int) -> None:
         """Put a new dart into the corner after `dart`, or at the owner's isolated vertex."""
-        new = len(tails)
-        at = tails[dart] if dart >= 0 else int(vertex[owner])
+        nonlocal size
+        new, size = size, size + 1
+        at = int(tails[dart] if dart >= 0 else vertex[owner])
         before = dart if dart >= 0 else anchor.get(at, -1)
-        tails.append(at)
+        tails[new] = at
         if before < 0:
-            after.append(new)
+            after[new] = new
         else:
-            after.append(after[before])
+            after[new] = after[before]
             after[before] = new
         if dart < 0:
             anchor[at] = new
@@ -86,7 +89,7 @@ def tie_components(
             attach(int(component[tails[host]]), host)
         else:
             attach(root, int(outer[root]))
-    return np.array(tails, np.int32), np.array(after, np.int32)
+    return tails, after
 
 
 def _hosts(
@@ -100,11 +103,13 @@ def _hosts(
     """Per component a dart with the host face on its left, -1 where no other component lies west."""
     if not len(piece):
         return np.full(n_components, -1, np.int64)
-    corner = np.concatenate([xy, piece[:, :2], piece[:, 2:]])
-    owner = np.concatenate([component, piece_component, piece_component])
-    order = np.lexsort((corner[:, 1], corner[:, 0], owner))
-    first = order[np.searchsorted(owner[order], np.arange(n_components))]
-    looks = corner[first]
+    corners = ((xy, component), (piece[:, :2], piece_component), (piece[:, 2:], piece_component))
+    looks = np.full((n_components, 2), np.inf)
+    for points, owner in corners:
+        np.minimum.at(looks[:, 0], owner, points[:, 0])
+    for points, owner in corners:
+        west = points[:, 0] == looks[owner, 0]
+        np.minimum.at(looks[:, 1], owner[west], points[west, 1])
     low, high = np.minimum(piece[:, 1], piece[:, 3]), np.maximum(piece[:, 1], piece[:, 3])
     bottom, height = float(low.min()), float(high.max() - low.min())
     spread = float((high - low).sum())
