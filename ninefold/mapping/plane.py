@@ -490,7 +490,7 @@ def _outer(
     if outer is None:
         if derived.n_faces > 1:
             raise BadInput(
-                f"the map has {derived.n_faces} faces and no headings; say which is the outer one: a dart with it on its left"
+                f"the map has {derived.n_faces} faces and no headings; give outer, a dart with the outer face on its left"
             )
         return 0
     return int(outer)

@@ -112,6 +112,13 @@ class Line:
         """The vertex sets of the connected pieces, by lowest vertex."""
         return _pieces(self.plane, [2 * e for e in self.edges])
 
+    @cached_property
+    def trails(self) -> tuple[tuple[int, ...], ...]:
+        """The fewest walks, as darts, that cover the line; see `ninefold.mapping.trails`."""
+        from .trails import trails
+
+        return trails(self)
+
     @property
     def edge_names(self) -> tuple[str, ...]:
         """The names of the edges; in order along the way where the line was made as a path."""
