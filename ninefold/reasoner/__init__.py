@@ -6,6 +6,7 @@ regions by what is inside what. A `Relation` is a value: a matrix, a DE-9IM stri
 
 from __future__ import annotations
 
+from .bulk import SetTable, relate_all, relate_pairs
 from .relate import relate
 from .relation import NAMES, RCC8_OF_NAME, Relation, converse_codes, de9im_strings, name_of_word, names_of
 
@@ -13,9 +14,12 @@ __all__ = [
     "NAMES",
     "RCC8_OF_NAME",
     "Relation",
+    "SetTable",
     "converse_codes",
     "de9im_strings",
     "name_of_word",
     "names_of",
     "relate",
+    "relate_all",
+    "relate_pairs",
 ]

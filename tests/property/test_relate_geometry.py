@@ -28,9 +28,19 @@ def test_symbolic_equals_shapely(seed, kind, size):
                 assert getattr(r, predicate)() == getattr(shapely, predicate)(gx, gy), (predicate, x, y, r)
 
 
-PREDICATES = (
-    ["disjoint", "intersects", "touches", "equals", "within", "contains", "contains_properly", "covers", "covered_by", "crosses", "overlaps"]
-)
+PREDICATES = [
+    "disjoint",
+    "intersects",
+    "touches",
+    "equals",
+    "within",
+    "contains",
+    "contains_properly",
+    "covers",
+    "covered_by",
+    "crosses",
+    "overlaps",
+]
 
 
 @settings(max_examples=150, deadline=None)
