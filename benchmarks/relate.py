@@ -51,7 +51,11 @@ def main() -> None:
     title("relate_all", "pairs", "seconds")
     found = [discs.region(rng, int(rng.integers(10, 400)), 0.45)[0] for _ in range(3000)]
     relate_all(found[:20])
-    row("3,000 regions of 10 to 400 vertices, table included", f"{3000 * 2999 // 2:,}", f"{best(lambda: relate_all(found)):.2f}")
+    row(
+        "3,000 regions of 10 to 400 vertices, table included",
+        f"{3000 * 2999 // 2:,}",
+        f"{best(lambda: relate_all(found)):.2f}",
+    )
 
     title("one relate(X, Y), warm, two cycles of 100", "time")
     pairs = near_pairs(pools[100][1], 200, rng)

@@ -1,10 +1,16 @@
 """Kernels that relate pairs of sets from their tables of stars.
 
 One set X is *stamped*: ``slot[cell]`` holds its entry, which is valid when it lies within X's own range, so nothing is ever
-cleared. Its partners are streamed past it. Codes are those of `ninefold.reasoner.relation`.
+cleared. Its partners are streamed past it. Two sets whose signatures (which of 256 patches of the map they touch) share no bit
+are *apart*: nothing is streamed, and a search or two decides.
+
+The inner kernels are inlined and the outer ones allocate nothing and count no references, since passing arrays costs more
+than relating two short cycles. Codes are those of `ninefold.reasoner.relation`.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,29 +18,60 @@ from ninefold._kernels import kernel
 
 from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II
 
-__all__ = ["all_pairs", "listed_pairs"]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Scratch", "Stars", "all_pairs", "cell_sets", "grouped", "listed_pairs", "signatures"]
 
 ALL_EIGHT = II | IB | IE | BI | BB | BE | EI | EB
 NONE = np.uint64(0)
 
 
-@kernel
-def has_number(ends, begin, end, number):  # type: ignore[no-untyped-def]
-    """Say whether a preorder number is inside the intervals ends[begin:end]: the parity of a binary search."""
-    if begin == end or number < ends[begin] or number >= ends[end - 1]:
+class Stars(NamedTuple):
+    """The stars of n sets; entries of one set are consecutive (see `ninefold.reasoner._stars` for their fields)."""
+
+    cell: NDArray[np.int32]
+    sectors: NDArray[np.uint64]
+    darts: NDArray[np.uint64]
+    part: NDArray[np.int32]
+    start: NDArray[np.int64]  # (n + 1,) entries of each set
+    ends: NDArray[np.int32]  # interval ends of the regions, one after another
+    end_start: NDArray[np.int64]  # (n + 1,)
+    seed: NDArray[np.int32]  # the preorder number of a face beside each part
+    part_start: NDArray[np.int64]  # (n + 1,)
+    number_at: NDArray[np.int32]  # the preorder number of a face at each cell
+    dim: NDArray[np.int64]
+    n_darts: NDArray[np.int64]  # of lines
+    n_ends: NDArray[np.int64]  # boundary vertices of lines
+    signature: NDArray[np.uint64]  # (n, 4)
+
+
+class Scratch(NamedTuple):
+    """Working memory: the slot of each cell, and the tick at which a part or an entry was last touched."""
+
+    slot: NDArray[np.int32]
+    mark: NDArray[np.int64]
+    hit: NDArray[np.int64]
+
+
+@kernel(inline="always")
+def has_number(t, x, number):  # type: ignore[no-untyped-def]
+    """Say whether a preorder number is in region x: the parity of a binary search in its interval ends."""
+    begin = t.end_start[x]
+    b = t.end_start[x + 1]
+    if number < t.ends[begin] or number >= t.ends[b - 1]:
         return False
     a = begin
-    b = end
     while a < b:
         m = (a + b) >> 1
-        if ends[m] <= number:
+        if t.ends[m] <= number:
             a = m + 1
         else:
             b = m
     return ((a - begin) & 1) == 1
 
 
-@kernel
+@kernel(inline="always")
 def popcount(x):  # type: ignore[no-untyped-def]
     """Count the bits of a 64-bit word."""
     x = x - ((x >> np.uint64(1)) & np.uint64(0x5555555555555555))
@@ -46,7 +83,7 @@ def popcount(x):  # type: ignore[no-untyped-def]
     return np.int64(x & np.uint64(0x7F))
 
 
-@kernel
+@kernel(inline="always")
 def transposed(bits):  # type: ignore[no-untyped-def]
     """Transpose the matrix of a code (dimensions not yet in it)."""
     kept = bits & (II | BB | EE | CURVE)
@@ -55,29 +92,36 @@ def transposed(bits):  # type: ignore[no-untyped-def]
     return kept | up | down
 
 
-@kernel
-def region_region(x, y, slot, mark, tick, cell, sectors, darts, part, start, ends, end_start, seed, part_start):  # type: ignore[no-untyped-def]
+@kernel(inline="always")
+def are_apart(t, x, y):  # type: ignore[no-untyped-def]
+    """Say whether the signatures of two sets show that they share no vertex."""
+    s = t.signature
+    return not (s[x, 0] & s[y, 0] or s[x, 1] & s[y, 1] or s[x, 2] & s[y, 2] or s[x, 3] & s[y, 3])
+
+
+@kernel(inline="always")
+def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate region y to the stamped region x."""
-    first = start[x]
-    many_x = part_start[x + 1] - part_start[x] > 1
-    many_y = part_start[y + 1] - part_start[y] > 1
-    ii = ib = ie = bi = be = ei = eb = NONE
-    curve = NONE
+    first = t.start[x]
+    count = t.start[x + 1] - first
+    many_x = t.part_start[x + 1] - t.part_start[x] > 1
+    many_y = t.part_start[y + 1] - t.part_start[y] > 1
+    ii = ib = ie = bi = be = ei = eb = curve = NONE
     touched = False
-    stop = start[x + 1]
-    for j in range(start[y], start[y + 1]):
-        i = slot[cell[j]]
-        if i < first or i >= stop:
+    full = False
+    for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
+        i = np.int64(w.slot[t.cell[j]])
+        if np.uint64(i - first) >= np.uint64(count):
             continue
         touched = True
         if many_x:
-            mark[part_start[x] + part[i]] = tick
+            w.mark[t.part_start[x] + t.part[i]] = tick
         if many_y:
-            mark[part_start[y] + part[j]] = tick
-        sx = sectors[i]
-        sy = sectors[j]
-        dx = darts[i]
-        dy = darts[j]
+            w.mark[t.part_start[y] + t.part[j]] = tick
+        sx = t.sectors[i]
+        sy = t.sectors[j]
+        dx = t.darts[i]
+        dy = t.darts[j]
         curve |= dx & dy
         ii |= sx & sy
         ie |= sx & ~sy
@@ -88,239 +132,211 @@ def region_region(x, y, slot, mark, tick, cell, sectors, darts, part, start, end
         be |= ox & ~sy
         ib |= oy & sx
         eb |= oy & ~sx
-        # nothing more to learn; untouched parts could add nothing either
         if curve and ii and ib and ie and bi and be and ei and eb:
-            return ALL_EIGHT | CURVE
+            full = True  # nothing more to learn, and an untouched part could add nothing either
+            break
     bits = 0
-    if touched:
-        bits = BB
-        bits |= II if ii else 0
-        bits |= IB if ib else 0
-        bits |= IE if ie else 0
-        bits |= BI if bi else 0
-        bits |= BE if be else 0
-        bits |= EI if ei else 0
-        bits |= EB if eb else 0
-        bits |= CURVE if curve else 0
-    if many_x or not touched:
-        for p in range(part_start[x], part_start[x + 1]):
-            if not (touched and mark[p] == tick):
-                inside = has_number(ends, end_start[y], end_start[y + 1], seed[p])
-                bits |= (II | BI | EI) if inside else (IE | BE)
-    if many_y or not touched:
-        for p in range(part_start[y], part_start[y + 1]):
-            if not (touched and mark[p] == tick):
-                inside = has_number(ends, end_start[x], end_start[x + 1], seed[p])
-                bits |= (II | IB | IE) if inside else (EI | EB)
+    if full:
+        bits = ALL_EIGHT | CURVE
+    else:
+        if touched:
+            bits = BB
+        if ii:
+            bits |= II
+        if ib:
+            bits |= IB
+        if ie:
+            bits |= IE
+        if bi:
+            bits |= BI
+        if be:
+            bits |= BE
+        if ei:
+            bits |= EI
+        if eb:
+            bits |= EB
+        if curve:
+            bits |= CURVE
+        if many_x or not touched:
+            for p in range(t.part_start[x], t.part_start[x + 1]):
+                if not touched or w.mark[p] != tick:
+                    bits |= (II | BI | EI) if has_number(t, y, t.seed[p]) else (IE | BE)
+        if many_y or not touched:
+            for p in range(t.part_start[y], t.part_start[y + 1]):
+                if not touched or w.mark[p] != tick:
+                    bits |= (II | IB | IE) if has_number(t, x, t.seed[p]) else (EI | EB)
     return bits
 
 
-@kernel
-def line_region_meet(line_flags, line_darts, sectors, curve):  # type: ignore[no-untyped-def]
-    """Bits of a line and a region at one cell that both have."""
-    bits = BB if line_flags & np.uint64(1) else IB
-    if line_darts & curve:
-        bits |= IB | CURVE
-    if line_darts & sectors & ~curve:
-        bits |= II
-    if line_darts & ~sectors & ~curve:
-        bits |= IE
-    if curve & ~line_darts:
-        bits |= EB
-    return bits
-
-
-@kernel
-def line_region(
-    x, y, slot, mark, tick, cell, sectors, darts, part, start, ends, end_start, seed, part_start, number_at, line_is_x, hit
-):  # type: ignore[no-untyped-def]  # noqa: E501
+@kernel(inline="always")
+def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate the stamped set x to y, one of them a line (or point) and the other a region, as (line, region)."""
+    line_is_x = t.dim[x] < 2
     a = x if line_is_x else y  # the line
     b = y if line_is_x else x  # the region
     bits = EI
-    shared = 0
-    for j in range(start[y], start[y + 1]):
-        i = slot[cell[j]]
-        if i < start[x] or i >= start[x + 1]:
+    for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
+        i = np.int64(w.slot[t.cell[j]])
+        if i < t.start[x] or i >= t.start[x + 1]:
             continue
-        shared += 1
         m = i if line_is_x else j
         k = j if line_is_x else i
-        hit[m] = tick
-        mark[part_start[a] + part[m]] = tick
-        mark[part_start[b] + part[k]] = tick
-        bits |= line_region_meet(sectors[m], darts[m], sectors[k], darts[k])
-    low = end_start[b]
-    high = end_start[b + 1]
-    for m in range(start[a], start[a + 1]):
-        if sectors[m] == np.uint64(3) and hit[m] != tick:
-            bits |= BI if has_number(ends, low, high, number_at[cell[m]]) else BE
-    for p in range(part_start[a], part_start[a + 1]):
-        if mark[p] != tick:
-            bits |= II if has_number(ends, low, high, seed[p]) else IE
-    for p in range(part_start[b], part_start[b + 1]):
-        if mark[p] != tick:
+        w.hit[m] = tick
+        w.mark[t.part_start[a] + t.part[m]] = tick
+        w.mark[t.part_start[b] + t.part[k]] = tick
+        darts = t.darts[m]
+        sectors = t.sectors[k]
+        curve = t.darts[k]
+        bits |= BB if t.sectors[m] & np.uint64(1) else IB
+        if darts & curve:
+            bits |= IB | CURVE
+        if darts & sectors & ~curve:
+            bits |= II
+        if darts & ~sectors & ~curve:
+            bits |= IE
+        if curve & ~darts:
+            bits |= EB
+    if t.n_ends[a] > 0:
+        for m in range(t.start[a], t.start[a + 1]):
+            if t.sectors[m] == np.uint64(3) and w.hit[m] != tick:
+                bits |= BI if has_number(t, b, t.number_at[t.cell[m]]) else BE
+    for p in range(t.part_start[a], t.part_start[a + 1]):
+        if w.mark[p] != tick:
+            bits |= II if has_number(t, b, t.seed[p]) else IE
+    for p in range(t.part_start[b], t.part_start[b + 1]):
+        if w.mark[p] != tick:
             bits |= EB
     return bits
 
 
-@kernel
-def line_line(x, y, slot, cell, flags, darts, start, n_darts, n_ends):  # type: ignore[no-untyped-def]
+@kernel(inline="always")
+def line_line(t, w, x, y, apart):  # type: ignore[no-untyped-def]
     """Relate line or point y to the stamped line or point x."""
     bits = 0
     shared = 0
     ends_x = 0
     ends_y = 0
     vertices = 0
-    for j in range(start[y], start[y + 1]):
-        i = slot[cell[j]]
-        if i < start[x] or i >= start[x + 1]:
+    for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
+        i = np.int64(w.slot[t.cell[j]])
+        if i < t.start[x] or i >= t.start[x + 1]:
             continue
         vertices += 1
-        fx = flags[i]
-        fy = flags[j]
-        shared += popcount(darts[i] & darts[j])
+        fx = t.sectors[i]
+        fy = t.sectors[j]
+        shared += popcount(t.darts[i] & t.darts[j])
         if fx & np.uint64(1):
             bits |= BB if fy & np.uint64(1) else BI
         else:
             bits |= IB if fy & np.uint64(1) else II
-        ends_x += 1 if fx == np.uint64(3) else 0
-        ends_y += 1 if fy == np.uint64(3) else 0
+        if fx == np.uint64(3):
+            ends_x += 1
+        if fy == np.uint64(3):
+            ends_y += 1
     if shared:
         bits |= II | CURVE
-    if shared < n_darts[x] or (n_darts[x] == 0 and vertices == 0):
+    if shared < t.n_darts[x] or (t.n_darts[x] == 0 and vertices == 0):
         bits |= IE
-    if shared < n_darts[y] or (n_darts[y] == 0 and vertices == 0):
+    if shared < t.n_darts[y] or (t.n_darts[y] == 0 and vertices == 0):
         bits |= EI
-    if ends_x < n_ends[x]:
+    if ends_x < t.n_ends[x]:
         bits |= BE
-    if ends_y < n_ends[y]:
+    if ends_y < t.n_ends[y]:
         bits |= EB
     return bits
 
 
-@kernel
-def stamp(x, slot, cell, start):  # type: ignore[no-untyped-def]
-    """Write the entries of x into the slots of their cells."""
-    for i in range(start[x], start[x + 1]):
-        slot[cell[i]] = i
-
-
-@kernel
-def one_pair(
-    x,
-    y,
-    slot,
-    mark,
-    hit,
-    tick,
-    cell,
-    sectors,
-    darts,
-    part,
-    start,
-    ends,
-    end_start,
-    seed,
-    part_start,
-    number_at,
-    dim,
-    n_darts,
-    n_ends,
-):  # type: ignore[no-untyped-def]  # noqa: E501
+@kernel(inline="always")
+def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate set y to the stamped set x: the whole code of (x, y)."""
-    dx = dim[x]
-    dy = dim[y]
+    dx = t.dim[x]
+    dy = t.dim[y]
     if dx == 2 and dy == 2:
-        bits = region_region(x, y, slot, mark, tick, cell, sectors, darts, part, start, ends, end_start, seed, part_start)
+        bits = region_region(t, w, x, y, apart, tick)
     elif dx < 2 and dy < 2:
-        bits = line_line(x, y, slot, cell, sectors, darts, start, n_darts, n_ends)
+        bits = line_line(t, w, x, y, apart)
     else:
-        bits = line_region(
-            x, y, slot, mark, tick, cell, sectors, darts, part, start, ends, end_start, seed, part_start, number_at,
-            dx < 2, hit,
-        )  # fmt: skip
+        bits = line_region(t, w, x, y, apart, tick)
         if dx == 2:
             bits = transposed(bits)
     return bits | EE | dx << 10 | dy << 12
 
 
 @kernel
-def listed_pairs(
-    xs, ys, n_cells, cell, sectors, darts, part, start, ends, end_start, seed, part_start, number_at, dim, n_darts, n_ends
-):  # type: ignore[no-untyped-def]  # noqa: E501
-    """Relate listed pairs, grouped by their first set with one counting sort: codes (P,) uint16."""
+def signatures(cell, start, n_cells):  # type: ignore[no-untyped-def]
+    """Which of 256 patches of the map each set touches: (n, 4) uint64."""
     n = start.size - 1
-    size = xs.size
-    begin = np.zeros(n + 1, np.int64)
-    for k in range(size):
-        begin[xs[k] + 1] += 1
+    signature = np.zeros((n, 4), np.uint64)
     for x in range(n):
-        begin[x + 1] += begin[x]
-    fill = begin[:-1].copy()
-    order = np.empty(size, np.int64)
-    for k in range(size):
-        order[fill[xs[k]]] = k
-        fill[xs[k]] += 1
-    slot = np.full(n_cells, -1, np.int64)
-    mark = np.full(part_start[n] + 1, -1, np.int64)
-    hit = np.full(start[n] + 1, -1, np.int64)
-    codes = np.empty(size, np.uint16)
-    for x in range(n):
-        if begin[x] == begin[x + 1]:
-            continue
-        stamp(x, slot, cell, start)
-        for at in range(begin[x], begin[x + 1]):
-            k = order[at]
-            codes[k] = one_pair(
-                x, ys[k], slot, mark, hit, k, cell, sectors, darts, part, start, ends, end_start, seed, part_start,
-                number_at, dim, n_darts, n_ends,
-            )  # fmt: skip
-    return codes
+        for i in range(start[x], start[x + 1]):
+            patch = np.int64(cell[i]) * 256 // n_cells
+            signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
+    return signature
 
 
 @kernel
-def all_pairs(
-    n_cells, cell, sectors, darts, part, start, ends, end_start, seed, part_start, number_at, dim, n_darts, n_ends
-):  # type: ignore[no-untyped-def]  # noqa: E501
-    """Relate every set to every set: codes (n, n) uint16.
+def grouped(keys, order, n):  # type: ignore[no-untyped-def]
+    """Stable counting sort of `order` by ``keys[order]``, values below n: (sorted order, start (n + 1,))."""
+    start = np.zeros(n + 1, np.int64)
+    for k in order:
+        start[keys[k] + 1] += 1
+    for x in range(n):
+        start[x + 1] += start[x]
+    fill = start[:-1].copy()
+    result = np.empty_like(order)
+    for k in order:
+        result[fill[keys[k]]] = k
+        fill[keys[k]] += 1
+    return result, start
 
-    An inverted index from cell to sets finds, for each set, the later sets that touch it; only those are streamed. For the
-    rest the stars are empty and a search or two decides. The lower half is the converse of the upper.
-    """
-    n = start.size - 1
+
+@kernel(_nrt=False)
+def listed_pairs(t, w, order, group, ys, codes):  # type: ignore[no-untyped-def]
+    """Relate listed pairs: set x with ``ys[k]`` for k in order[group[x]:group[x + 1]]; codes (P,) are written."""
+    for x in range(t.start.size - 1):
+        if group[x] == group[x + 1]:
+            continue
+        for i in range(t.start[x], t.start[x + 1]):
+            w.slot[t.cell[i]] = i
+        for at in range(group[x], group[x + 1]):
+            k = order[at]
+            y = ys[k]
+            codes[k] = one_pair(t, w, x, y, are_apart(t, x, y), k)
+
+
+@kernel
+def cell_sets(cell, start, n_cells):  # type: ignore[no-untyped-def]
+    """The inverted index: the sets in each cell, (owner, start (n_cells + 1,))."""
     begin = np.zeros(n_cells + 1, np.int64)
-    for i in range(start[n]):
+    for i in range(start[-1]):
         begin[cell[i] + 1] += 1
     for c in range(n_cells):
         begin[c + 1] += begin[c]
     fill = begin[:-1].copy()
-    owner = np.empty(start[n], np.int32)
-    for x in range(n):
+    owner = np.empty(start[-1], np.int32)
+    for x in range(start.size - 1):
         for i in range(start[x], start[x + 1]):
             owner[fill[cell[i]]] = x
             fill[cell[i]] += 1
-    slot = np.full(n_cells, -1, np.int64)
-    nothing = np.full(n_cells, -1, np.int64)
-    empty = np.zeros(n + 1, np.int64)
-    mark = np.full(part_start[n] + 1, -1, np.int64)
-    hit = np.full(start[n] + 1, -1, np.int64)
-    near = np.full(n, -1, np.int64)
-    codes = np.empty((n, n), np.uint16)
+    return owner, begin
+
+
+@kernel(_nrt=False)
+def all_pairs(t, w, owner, begin, near, codes):  # type: ignore[no-untyped-def]
+    """Relate every set to every set; codes (n, n) are written.
+
+    The inverted index (`owner`, `begin`) marks, for each set, the sets that touch it; the rest are apart. The lower half of
+    the table is the converse of the upper.
+    """
+    n = t.start.size - 1
     tick = 0
     for x in range(n):
-        stamp(x, slot, cell, start)
-        for i in range(start[x], start[x + 1]):
-            for k in range(begin[cell[i]], begin[cell[i] + 1]):
+        for i in range(t.start[x], t.start[x + 1]):
+            w.slot[t.cell[i]] = i
+            for k in range(begin[t.cell[i]], begin[t.cell[i] + 1]):
                 near[owner[k]] = x
         for y in range(x, n):
             tick += 1
-            # an untouched region pair needs no streaming at all; a line's ends are still to be looked at
-            code = one_pair(
-                x, y, slot if near[y] == x else nothing, mark, hit, tick, cell, sectors, darts, part,
-                start if near[y] == x or dim[x] < 2 or dim[y] < 2 else empty, ends, end_start, seed, part_start,
-                number_at, dim, n_darts, n_ends,
-            )  # fmt: skip
+            code = one_pair(t, w, x, y, near[y] != x, tick)
             codes[x, y] = code
-            codes[y, x] = transposed(code & 1023) | dim[y] << 10 | dim[x] << 12
-    return codes
+            codes[y, x] = transposed(code & 1023) | t.dim[y] << 10 | t.dim[x] << 12

@@ -1,6 +1,6 @@
 """Kernels that turn sets into tables of stars: 64-bit words a vertex, grouped by set.
 
-A *cell* is 64 darts of one vertex: vertex v has cells ``cell_start[v] .. cell_start[v + 1] - 1``, nearly always one. An
+A *cell* is 64 darts of one vertex: vertex v has cells ``cell_start[v] .. cell_start[v + 1] - 1``, mostly one. An
 *entry* is the star of one set in one cell:
 
 =======  =====================================================  ===========================================================
@@ -44,7 +44,7 @@ def below(rank, chunk):  # type: ignore[no-untyped-def]
 
 @kernel
 def claim(v, entry_of, start, end, cell_start, cell, parent):  # type: ignore[no-untyped-def]
-    """Return the first entry of vertex v in the set whose entries are start .. end - 1 (made if missing), and the new end."""
+    """Return the first entry of vertex v in the set with entries start .. end - 1 (made if missing), and the new end."""
     c = cell_start[v]
     i = entry_of[c]
     if start <= i < end and cell[i] == c:

@@ -75,9 +75,13 @@ def relate_pairs(sets: Sequence[Set] | SetTable, pairs: ArrayLike) -> NDArray[np
         _one_map(sets)
         return np.array([relate_code(sets[i], sets[j]) for i, j in index.tolist()], np.uint16)
     table = sets if isinstance(sets, SetTable) else SetTable.build(sets)
-    x, y = np.ascontiguousarray(index.astype(np.int64).T)
-    run = _pairs.listed_pairs.compiled
-    return np.asarray(run(x, y, table.n_cells, *table.arrays))
+    xs, ys = (np.ascontiguousarray(index[:, k], dtype=np.int32) for k in (0, 1))
+    group = _pairs.grouped.compiled  # by y, then stably by x: partners are streamed in the order they lie in memory
+    by_y, _ = group(ys, np.arange(len(index), dtype=np.int64), len(table))
+    order, start = group(xs, by_y, len(table))
+    codes = np.empty(len(index), np.uint16)
+    _pairs.listed_pairs.compiled(table.stars, table.scratch(), order, start, ys, codes)
+    return codes
 
 
 def relate_all(sets: Sequence[Set] | SetTable) -> NDArray[np.uint16]:
@@ -106,8 +110,11 @@ def relate_all(sets: Sequence[Set] | SetTable) -> NDArray[np.uint16]:
         _one_map(sets)
         return np.array([[relate_code(x, y) for y in sets] for x in sets], np.uint16).reshape(n, n)
     table = sets if isinstance(sets, SetTable) else SetTable.build(sets)
-    run = _pairs.all_pairs.compiled
-    return np.asarray(run(table.n_cells, *table.arrays))
+    stars = table.stars
+    owner, begin = _pairs.cell_sets.compiled(stars.cell, stars.start, table.n_cells)
+    codes = np.empty((n, n), np.uint16)
+    _pairs.all_pairs.compiled(stars, table.scratch(), owner, begin, np.full(n, -1, np.int64), codes)
+    return codes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,17 +124,24 @@ class SetTable:
     Attributes
     ----------
     n_cells
-        Number of cells of the map: one a vertex, one more for every further 64 darts at it.
-    arrays
-        What the kernels take: cell, sectors, darts, part (entries); start (n + 1,); region ends and their start; seeds of
-        parts and their start; preorder number of a face at each cell; dimension, darts and boundary vertices of each set.
+        Number of cells of the map: one a vertex, one more for every further 64 darts at it. They are numbered by the
+        preorder of a face beside them, so that cells that are near in the map are near in memory.
+    stars
+        The arrays that the kernels take.
     """
 
     n_cells: int
-    arrays: tuple[NDArray[np.generic], ...]
+    stars: _pairs.Stars
 
     def __len__(self) -> int:
-        return int(self.arrays[4].size) - 1
+        return int(self.stars.dim.size)
+
+    def scratch(self) -> _pairs.Scratch:
+        """Return fresh working memory for the pair kernels."""
+        entries, parts = int(self.stars.start[-1]), int(self.stars.part_start[-1])
+        return _pairs.Scratch(
+            np.full(self.n_cells, -1, np.int32), np.full(parts + 1, -1, np.int64), np.full(entries + 1, -1, np.int64)
+        )
 
     @classmethod
     def build(cls, sets: Sequence[Set]) -> SetTable:
@@ -151,20 +165,37 @@ class SetTable:
         cell, sectors, darts, part = cell[take], sectors[take], darts[take], part[take]
         ends = [x.ends if isinstance(x, Region) else _NO_ENDS for x in sets]
         end_start = np.concatenate([[0], np.cumsum([e.size for e in ends])]).astype(np.int64)
-        number_at = np.zeros(int(cell_start[-1]), np.int32)
+        n_cells = int(cell_start[-1])
+        number_at = np.zeros(n_cells, np.int32)
         if plane.outer >= 0:
             number_at = np.repeat(number_of[plane.first_dart], np.diff(cell_start))
+            near_order, _ = _pairs.grouped.compiled(number_at, np.arange(n_cells), plane.n_faces)
+            renumbered = np.empty(n_cells, np.int32)
+            renumbered[near_order] = np.arange(n_cells, dtype=np.int32)
+            cell, number_at = renumbered[cell], number_at[near_order]
         is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
         n_ends = np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0)
         n_darts = np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64)
         seed = seed[take_parts]
         points = np.flatnonzero(dim == 0)
         seed[part_start[points]] = number_at[cell[start[points]]]
-        arrays = (
-            *(cell, sectors, darts, part, start, np.concatenate([*ends, _NO_ENDS]), end_start),
-            *(seed, part_start, number_at, dim, n_darts, n_ends.astype(np.int64)),
+        stars = _pairs.Stars(
+            cell=cell,
+            sectors=sectors,
+            darts=darts,
+            part=part,
+            start=start,
+            ends=np.concatenate([*ends, _NO_ENDS]),
+            end_start=end_start,
+            seed=seed,
+            part_start=part_start,
+            number_at=number_at,
+            dim=dim,
+            n_darts=n_darts,
+            n_ends=n_ends.astype(np.int64),
+            signature=_pairs.signatures.compiled(cell, start, n_cells),
         )
-        return cls(int(cell_start[-1]), arrays)
+        return cls(n_cells, stars)
 
 
 _NO_ENDS = np.zeros(0, np.int32)

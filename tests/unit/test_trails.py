@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,7 +18,7 @@ def test_trails_cover_every_edge_once_and_end_at_the_boundary(seed, kind, size):
         assert sorted(d >> 1 for trail in line.trails for d in trail) == list(line.edges)
         ends = []
         for trail in line.trails:
-            assert all(plane.tail[a ^ 1] == plane.tail[b] for a, b in zip(trail, trail[1:], strict=False))
+            assert all(plane.tail[a ^ 1] == plane.tail[b] for a, b in itertools.pairwise(trail))
             if plane.tail[trail[0]] != plane.tail[trail[-1] ^ 1]:
                 ends += [int(plane.tail[trail[0]]), int(plane.tail[trail[-1] ^ 1])]
         assert sorted(ends) == sorted(line.boundary)
