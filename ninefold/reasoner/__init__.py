@@ -7,6 +7,7 @@ regions by what is inside what. A `Relation` is a value: a matrix, a DE-9IM stri
 from __future__ import annotations
 
 from .bulk import SetTable, relate_all, relate_pairs
+from .nesting import containment_tree
 from .relate import relate
 from .relation import NAMES, RCC8_OF_NAME, Relation, converse_codes, de9im_strings, name_of_word, names_of
 
@@ -15,6 +16,7 @@ __all__ = [
     "RCC8_OF_NAME",
     "Relation",
     "SetTable",
+    "containment_tree",
     "converse_codes",
     "de9im_strings",
     "name_of_word",

@@ -1,8 +1,9 @@
 """Kernels that relate pairs of sets from their tables of stars.
 
-One set X is *stamped*: ``slot[cell]`` holds its entry, which is valid when it lies within X's own range, so nothing is ever
-cleared. Its partners are streamed past it. Two sets whose signatures (which of 256 patches of the map they touch) share no bit
-are *apart*: nothing is streamed, and a search or two decides.
+One set X is *stamped*: ``slot[cell]`` holds its entry, which is valid when it lies in the range of X, so nothing is ever
+cleared. Its partners are streamed past it. A set's signature tells which of 256 patches of the map it touches; its entries
+are sorted by cell, so they fall into one run a patch. Of two regions only the runs in common patches are streamed; two sets
+with no common patch are *apart*, and a search or two decides.
 
 The inner kernels are inlined and the outer ones allocate nothing and count no references, since passing arrays costs more
 than relating two short cycles. Codes are those of `ninefold.reasoner.relation`.
@@ -21,7 +22,7 @@ from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scratch", "Stars", "all_pairs", "cell_sets", "grouped", "listed_pairs", "signatures"]
+__all__ = ["Scratch", "Stars", "all_pairs", "cell_sets", "grouped", "listed_pairs", "patches"]
 
 ALL_EIGHT = II | IB | IE | BI | BB | BE | EI | EB
 NONE = np.uint64(0)
@@ -44,6 +45,8 @@ class Stars(NamedTuple):
     n_darts: NDArray[np.int64]  # of lines
     n_ends: NDArray[np.int64]  # boundary vertices of lines
     signature: NDArray[np.uint64]  # (n, 4)
+    run: NDArray[np.int64]  # where the run of each touched patch starts, set after set, and the total number of entries
+    run_start: NDArray[np.int64]  # (n + 1,)
 
 
 class Scratch(NamedTuple):
@@ -109,32 +112,41 @@ def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     ii = ib = ie = bi = be = ei = eb = curve = NONE
     touched = False
     full = False
-    for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
-        i = np.int64(w.slot[t.cell[j]])
-        if np.uint64(i - first) >= np.uint64(count):
-            continue
-        touched = True
-        if many_x:
-            w.mark[t.part_start[x] + t.part[i]] = tick
-        if many_y:
-            w.mark[t.part_start[y] + t.part[j]] = tick
-        sx = t.sectors[i]
-        sy = t.sectors[j]
-        dx = t.darts[i]
-        dy = t.darts[j]
-        curve |= dx & dy
-        ii |= sx & sy
-        ie |= sx & ~sy
-        ei |= sy & ~sx
-        ox = dx & ~dy
-        oy = dy & ~dx
-        bi |= ox & sy
-        be |= ox & ~sy
-        ib |= oy & sx
-        eb |= oy & ~sx
-        if curve and ii and ib and ie and bi and be and ei and eb:
-            full = True  # nothing more to learn, and an untouched part could add nothing either
-            break
+    at = t.run_start[y]
+    for k in range(0 if apart else 4):
+        its = t.signature[y, k]
+        common = its & t.signature[x, k]
+        while common and not full:
+            patch = common & (~common + np.uint64(1))  # the lowest common patch
+            common ^= patch
+            r = at + popcount(its & (patch - np.uint64(1)))
+            for j in range(t.run[r], t.run[r + 1]):
+                i = np.int64(w.slot[t.cell[j]])
+                if np.uint64(i - first) >= np.uint64(count):
+                    continue
+                touched = True
+                if many_x:
+                    w.mark[t.part_start[x] + t.part[i]] = tick
+                if many_y:
+                    w.mark[t.part_start[y] + t.part[j]] = tick
+                sx = t.sectors[i]
+                sy = t.sectors[j]
+                dx = t.darts[i]
+                dy = t.darts[j]
+                curve |= dx & dy
+                ii |= sx & sy
+                ie |= sx & ~sy
+                ei |= sy & ~sx
+                ox = dx & ~dy
+                oy = dy & ~dx
+                bi |= ox & sy
+                be |= ox & ~sy
+                ib |= oy & sx
+                eb |= oy & ~sx
+                if curve and ii and ib and ie and bi and be and ei and eb:
+                    full = True  # nothing more to learn, and an untouched part could add nothing either
+                    break
+        at += popcount(its)
     bits = 0
     if full:
         bits = ALL_EIGHT | CURVE
@@ -263,15 +275,25 @@ def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def signatures(cell, start, n_cells):  # type: ignore[no-untyped-def]
-    """Which of 256 patches of the map each set touches: (n, 4) uint64."""
+def patches(cell, start, n_cells):  # type: ignore[no-untyped-def]
+    """Find the patches each set touches, its entries being sorted by cell: signature (n, 4), run, run_start (n + 1,)."""
     n = start.size - 1
     signature = np.zeros((n, 4), np.uint64)
+    run = np.empty(cell.size + 1, np.int64)
+    run_start = np.zeros(n + 1, np.int64)
+    end = 0
     for x in range(n):
+        last = -1
         for i in range(start[x], start[x + 1]):
             patch = np.int64(cell[i]) * 256 // n_cells
-            signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
-    return signature
+            if patch != last:
+                signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
+                run[end] = i
+                end += 1
+                last = patch
+        run_start[x + 1] = end
+    run[end] = cell.size
+    return signature, run[: end + 1].copy(), run_start
 
 
 @kernel

@@ -7,7 +7,7 @@ A *cell* is 64 darts of one vertex: vertex v has cells ``cell_start[v] .. cell_s
 field    region                                                 line (a point is a line without darts)
 =======  =====================================================  ===========================================================
 cell     every cell of every boundary vertex                    every cell of every vertex
-sectors  mask of the sectors inside                             bit 0: the vertex is boundary; bit 1: first cell of its vertex
+sectors  mask of the sectors inside                             bit 0: boundary vertex; bit 1: first cell of its vertex
 darts    mask of the boundary darts                             mask of the line's darts
 part     number of the connected part of the boundary           number of the connected piece
 =======  =====================================================  ===========================================================

@@ -173,6 +173,11 @@ class SetTable:
             renumbered = np.empty(n_cells, np.int32)
             renumbered[near_order] = np.arange(n_cells, dtype=np.int32)
             cell, number_at = renumbered[cell], number_at[near_order]
+        group = _pairs.grouped.compiled
+        by_cell, _ = group(cell, np.arange(cell.size), n_cells)
+        row, _ = group(np.repeat(np.arange(len(sets), dtype=np.int32), np.diff(start)), by_cell, len(sets))
+        cell, sectors, darts, part = cell[row], sectors[row], darts[row], part[row]
+        signature, run, run_start = _pairs.patches.compiled(cell, start, n_cells)
         is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
         n_ends = np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0)
         n_darts = np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64)
@@ -193,7 +198,9 @@ class SetTable:
             dim=dim,
             n_darts=n_darts,
             n_ends=n_ends.astype(np.int64),
-            signature=_pairs.signatures.compiled(cell, start, n_cells),
+            signature=signature,
+            run=run,
+            run_start=run_start,
         )
         return cls(n_cells, stars)
 
