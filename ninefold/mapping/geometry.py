@@ -136,6 +136,8 @@ def _bearings(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.int64]]:
     """Headings (2E,), turns (E,), and all polylines (straight ones too) as one (N, 2) array with offsets (E + 1,)."""
     n_edges = len(ends)
+    if paths is not None and len(paths) != n_edges:
+        raise BadInput(f"{len(paths)} paths for {n_edges} edges; give one each, or None for a straight edge")
     if paths is None or all(path is None for path in paths):
         step = xy[ends[:, 1]] - xy[ends[:, 0]]
         flat = np.flatnonzero((step == 0).all(axis=1))
@@ -146,8 +148,6 @@ def _bearings(
         heading[0::2] = out
         heading[1::2] = np.where(out > 0, out - np.pi, out + np.pi)
         return heading, np.zeros(n_edges), None, np.zeros(0, np.int64)
-    if len(paths) != n_edges:
-        raise BadInput(f"{len(paths)} paths for {n_edges} edges; give one each, or None for a straight edge")
     lines = [_polyline(xy, ends, e, path, names) for e, path in enumerate(paths)]
     start = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
     line = np.concatenate(lines)

@@ -49,7 +49,8 @@ def containment_tree(regions: Mapping[str, Region] | Sequence[Region]) -> Any:
     >>> from ninefold.mapping import PlaneMap
     >>> from ninefold.reasoner import containment_tree
     >>> plane = PlaneMap.from_geometry(
-    ...     [(0, 0), (9, 0), (9, 9), (0, 9), (1, 1), (5, 1), (1, 5)], [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4)])
+    ...     [(0, 0), (9, 0), (9, 9), (0, 9), (1, 1), (5, 1), (1, 5)],
+    ...     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4)])
     >>> tree = containment_tree({"room": plane.cycle([4, 5, 6]), "house": plane.cycle([0, 1, 2, 3])})
     >>> list(tree.edges)
     [('house', 'room')]
