@@ -12,7 +12,7 @@ from ninefold.errors import BadInput, NotPlane
 from . import _orbits
 from .genus import offending_part
 from .heading import TAU
-from .turning import face_turns
+from .turning import corner_angles, face_turns, settle_turns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,11 +149,9 @@ def component_walks(
         rotation = strip_tethers(next_ccw, tether)
         next_face = face_permutation(rotation)
         face_of, n_faces = _orbits.face_labels.for_work(tail.size)(next_face)
-    gap = heading[rotation] - heading
-    gap -= TAU * np.floor(gap / TAU)
-    gap[rotation == np.arange(tail.size)] = TAU
-    gap[~real] = 0.0
-    wrong = np.flatnonzero(np.bincount(tail, weights=gap, minlength=component.size) > 1.5 * TAU)
+    corner = corner_angles(rotation, heading)
+    corner[~real] = 0.0
+    wrong = np.flatnonzero(np.bincount(tail, weights=corner, minlength=component.size) > 1.5 * TAU)
     if wrong.size:
         dart = int(np.flatnonzero(real & (tail == wrong[0]))[0])
         raise NotPlane(
@@ -161,7 +159,9 @@ def component_walks(
             "of the rotation; sort the rotation by heading, or leave the headings out"
         )
     lowest = first_darts(face_of, int(n_faces))
-    turns = face_turns(next_face, face_of, int(n_faces), np.where(real, heading, 0.0), np.where(tether, -np.pi, turn))
+    settled = settle_turns(heading, turn)
+    settled[tether] = 0.0
+    turns = face_turns(next_face, face_of, int(n_faces), corner, settled)
     lowest, turns = lowest[real[lowest]], turns[real[lowest]]
     odd = np.flatnonzero(np.abs(turns) != 1)
     if odd.size:

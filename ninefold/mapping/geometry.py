@@ -86,8 +86,8 @@ def from_geometry(
     tail = np.ascontiguousarray(ends.reshape(-1), dtype=np.int32)
     next_ccw = _rotation(tail, heading, n_vertices, v_names, e_names)
     tether = np.zeros(n_edges, np.bool_)
-    derived = checks.derive(tail, next_ccw, v_names, e_names)
-    if derived.n_components > 1:
+    derived: checks.Derived | None = checks.derive(tail, next_ccw, v_names, e_names)
+    if derived is not None and derived.n_components > 1:
         segments = _segments(xy, ends, line, start)
         tail, next_ccw = tie_components(tail, next_ccw, heading, turn, derived, xy, segments, e_names)
         extra = tail.size // 2 - n_edges
@@ -95,16 +95,8 @@ def from_geometry(
         heading = np.concatenate([heading, np.full(2 * extra, np.nan)])
         turn = np.concatenate([turn, np.full(extra, np.nan)])
         e_names = _with_tether_names(e_names, extra)
-    return PlaneMap.from_darts(
-        tail,
-        next_ccw,
-        n_vertices=n_vertices,
-        tether=tether,
-        heading=heading,
-        turn=turn,
-        vertex_names=v_names,
-        edge_names=e_names,
-    )
+        derived = None
+    return PlaneMap._checked(tail, next_ccw, None, tether, (heading, turn), v_names, e_names, derived)
 
 
 def _points(points: ArrayLike) -> NDArray[np.float64]:

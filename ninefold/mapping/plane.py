@@ -16,6 +16,7 @@ from ninefold.errors import BadInput, NotPlane
 
 from . import checks
 from .containment import ContainmentIndex
+from .heading import TAU
 from .names import Names
 
 if TYPE_CHECKING:
@@ -137,22 +138,39 @@ class PlaneMap:
         if (v_names.size, e_names.size) != (count, n_edges):
             raise BadInput(f"{v_names.size} vertex and {e_names.size} edge names for {count} and {n_edges}")
         angles = _angles(heading, turn, virtual)
-        derived = checks.derive(tails, after, v_names, e_names)
+        return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
+
+    @classmethod
+    def _checked(
+        cls,
+        tail: NDArray[np.int32],
+        next_ccw: NDArray[np.int32],
+        outer: int | None,
+        tether: NDArray[np.bool_],
+        angles: tuple[NDArray[np.float64], NDArray[np.float64]] | None,
+        vertex_names: Names,
+        edge_names: Names,
+        derived: checks.Derived | None = None,
+    ) -> PlaneMap:
+        """Check rotation, connection, Euler and turning numbers of arrays this map may keep; the last step of all makers."""
+        if derived is None:
+            derived = checks.derive(tail, next_ccw, vertex_names, edge_names)
         if derived.n_components != 1:
             apart = int(np.flatnonzero(derived.component != 0)[0])
             raise BadInput(
-                f"the map has {derived.n_components} components ({v_names[apart]!r} is not connected to {v_names[0]!r}), "
-                "so which face hosts which is not determined; tie them with tethers, or build from geometry"
+                f"the map has {derived.n_components} components ({vertex_names[apart]!r} is not connected to "
+                f"{vertex_names[0]!r}), so which face hosts which is not determined; tie them with tethers, or build "
+                "from geometry"
             )
-        components = np.zeros(count, np.int32)
-        if virtual.any():
-            components = _components_without(tails, after, virtual, derived)
-        outer_dart = _outer(outer, angles, tails, after, virtual, components, derived, e_names)
-        head, turns = angles if angles is not None else (None, None)
-        for array in (tails, after, virtual, head, turns):
+        components = derived.component
+        if tether.any():
+            components = _components_without(tail, tether, vertex_names.size)
+        outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
+        heading, turn = angles if angles is not None else (None, None)
+        for array in (tail, next_ccw, tether, heading, turn):
             if array is not None:
                 array.setflags(write=False)
-        return cls(tails, after, outer_dart, virtual, head, turns, v_names, e_names, derived)
+        return cls(tail, next_ccw, outer_dart, tether, heading, turn, vertex_names, edge_names, derived)
 
     @classmethod
     def from_rotation(
@@ -440,18 +458,16 @@ def _angles(
     turns[tether] = np.nan
     if not (np.isfinite(head[~np.repeat(tether, 2)]).all() and np.isfinite(turns[~tether]).all()):
         raise BadInput("heading and turn must be finite radians")
+    head -= TAU * np.round(head / TAU)
     return head, turns
 
 
-def _components_without(
-    tail: NDArray[np.int32], next_ccw: NDArray[np.int32], tether: NDArray[np.bool_], derived: checks.Derived
-) -> NDArray[np.int32]:
+def _components_without(tail: NDArray[np.int32], tether: NDArray[np.bool_], n: int) -> NDArray[np.int32]:
     """Component of each vertex once tethers are gone; they must have joined the components like a tree."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     real = np.flatnonzero(~tether)
-    n = derived.component.size
     links = coo_array((np.ones(real.size, np.int8), (tail[2 * real], tail[2 * real + 1])), shape=(n, n))
     count, component = connected_components(links, directed=False)
     if count - 1 != int(tether.sum()):

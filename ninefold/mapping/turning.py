@@ -21,9 +21,7 @@ from .heading import TAU
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["edge_residual", "face_turns", "settle_turns"]
-
-Floats = "NDArray[np.float64]"
+__all__ = ["corner_angles", "edge_residual", "face_turns", "settle_turns"]
 
 
 def edge_residual(heading: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -40,11 +38,19 @@ def settle_turns(heading: NDArray[np.float64], turn: NDArray[np.float64]) -> NDA
     return turn + edge_residual(heading, turn)
 
 
+def corner_angles(rotation: NDArray[np.int32], heading: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the angle from each dart to the next one counter-clockwise, (2E,) in (0, 2 pi]; alone at its vertex, 2 pi."""
+    angle = heading[rotation]
+    angle -= heading
+    angle[angle <= 0] += TAU
+    return angle
+
+
 def face_turns(
     next_face: NDArray[np.int32],
     face_of: NDArray[np.int32],
     n_faces: int,
-    heading: NDArray[np.float64],
+    corner: NDArray[np.float64],
     turn: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """Return the turning number of every face, in whole turns.
@@ -53,8 +59,8 @@ def face_turns(
     ----------
     next_face, face_of
         (2E,) next dart of the face walk, and the face on each dart's left.
-    heading, turn
-        (2E,) yaw on leaving, (E,) net rotation along dart 2e, radians; they are settled first.
+    corner, turn
+        (2E,) angle from each dart to the next counter-clockwise, (E,) settled net rotation along dart 2e, radians.
 
     Returns
     -------
@@ -63,14 +69,10 @@ def face_turns(
 
     Notes
     -----
-    Complexity O(E); array code throughout.
+    The corner at the head of d lies between the next dart of the walk and the twin of d, which is the one after it around
+    that vertex. Complexity O(E); array code throughout.
     """
-    settled = settle_turns(heading, turn)
-    twin = np.arange(next_face.size, dtype=np.int32) ^ 1
-    inside = heading[twin] - heading[next_face]
-    inside -= TAU * np.floor(inside / TAU)
-    inside[next_face == twin] = TAU
-    along = np.repeat(settled, 2)
-    along[1::2] *= -1
-    total = np.bincount(face_of, weights=np.pi - inside + along, minlength=n_faces)
-    return np.asarray(np.rint(total / TAU), dtype=np.int64)
+    total = np.pi - corner[next_face]
+    total[0::2] += turn
+    total[1::2] -= turn
+    return np.asarray(np.rint(np.bincount(face_of, weights=total, minlength=n_faces) / TAU), dtype=np.int64)
