@@ -147,8 +147,11 @@ class SetTable:
     def build(cls, sets: Sequence[Set]) -> SetTable:
         """Build the table. Complexity O(total length of the sets + V)."""
         plane = _one_map(sets)
+        n = len(sets)
         cell_start = np.concatenate([[0], np.cumsum(np.maximum(1, -(-plane.spokes // 64)))]).astype(np.int64)
+        n_cells = int(cell_start[-1])
         number_of = plane.containment.preorder[plane.face_of] if plane.outer >= 0 else np.zeros(0, np.int32)
+        place, number_at = _places(plane, cell_start, number_of)
         dim = np.array([x.dimension for x in sets], np.int64)
         chunks = [
             _points([x for x in sets if isinstance(x, Point)], cell_start),
@@ -156,34 +159,21 @@ class SetTable:
             _regions(plane, [x for x in sets if isinstance(x, Region)], cell_start, number_of),
         ]
         order = np.concatenate([np.flatnonzero(dim == k) for k in range(3)])
-        cell, sectors, darts, part = (np.concatenate([chunk[k] for chunk in chunks]) for k in range(4))
-        sizes = np.concatenate([np.diff(chunk[4]) for chunk in chunks])
-        seed = np.concatenate([chunk[5] for chunk in chunks])
-        parts = np.concatenate([np.diff(chunk[6]) for chunk in chunks])
+        sizes, parts = (np.concatenate([np.diff(chunk[k]) for chunk in chunks]) for k in (4, 6))
         take, start = _regrouped(sizes, order)
         take_parts, part_start = _regrouped(parts, order)
-        cell, sectors, darts, part = cell[take], sectors[take], darts[take], part[take]
-        ends = [x.ends if isinstance(x, Region) else _NO_ENDS for x in sets]
-        end_start = np.concatenate([[0], np.cumsum([e.size for e in ends])]).astype(np.int64)
-        n_cells = int(cell_start[-1])
-        number_at = np.zeros(n_cells, np.int32)
-        if plane.outer >= 0:
-            number_at = np.repeat(number_of[plane.first_dart], np.diff(cell_start))
-            near_order, _ = _pairs.grouped.compiled(number_at, np.arange(n_cells), plane.n_faces)
-            renumbered = np.empty(n_cells, np.int32)
-            renumbered[near_order] = np.arange(n_cells, dtype=np.int32)
-            cell, number_at = renumbered[cell], number_at[near_order]
-        group = _pairs.grouped.compiled
-        by_cell, _ = group(cell, np.arange(cell.size), n_cells)
-        row, _ = group(np.repeat(np.arange(len(sets), dtype=np.int32), np.diff(start)), by_cell, len(sets))
-        cell, sectors, darts, part = cell[row], sectors[row], darts[row], part[row]
-        signature, run, run_start = _pairs.patches.compiled(cell, start, n_cells)
-        is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
-        n_ends = np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0)
-        n_darts = np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64)
-        seed = seed[take_parts]
+        cell = place[np.concatenate([chunk[0] for chunk in chunks])[take]]
+        by_cell, _ = _pairs.grouped.compiled(cell, np.arange(cell.size), n_cells)
+        owner = np.repeat(np.arange(n, dtype=np.int32), np.diff(start))
+        row, _ = _pairs.grouped.compiled(owner, by_cell, n)  # each set's entries, sorted by cell
+        cell = cell[row]
+        sectors, darts, part = (np.concatenate([chunk[k] for chunk in chunks])[take][row] for k in (1, 2, 3))
+        seed = np.concatenate([chunk[5] for chunk in chunks])[take_parts]
         points = np.flatnonzero(dim == 0)
         seed[part_start[points]] = number_at[cell[start[points]]]
+        ends = [x.ends if isinstance(x, Region) else _NO_ENDS for x in sets]
+        is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
+        signature, run, run_start = _pairs.patches.compiled(cell, start, n_cells)
         stars = _pairs.Stars(
             cell=cell,
             sectors=sectors,
@@ -191,13 +181,13 @@ class SetTable:
             part=part,
             start=start,
             ends=np.concatenate([*ends, _NO_ENDS]),
-            end_start=end_start,
+            end_start=np.concatenate([[0], np.cumsum([e.size for e in ends])]).astype(np.int64),
             seed=seed,
             part_start=part_start,
             number_at=number_at,
             dim=dim,
-            n_darts=n_darts,
-            n_ends=n_ends.astype(np.int64),
+            n_darts=np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64),
+            n_ends=np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0).astype(np.int64),
             signature=signature,
             run=run,
             run_start=run_start,
@@ -220,6 +210,20 @@ def _one_map(sets: Sequence[Set]) -> PlaneMap:
         if x.plane is not first.plane:
             same_map(first, x)
     return first.plane
+
+
+def _places(
+    plane: PlaneMap, cell_start: NDArray[np.int64], number_of: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Renumber cells by the preorder of a face beside them: new number of each cell, and that preorder by new number."""
+    n_cells = int(cell_start[-1])
+    if plane.outer < 0:
+        return np.arange(n_cells, dtype=np.int32), np.zeros(n_cells, np.int32)
+    number_at = np.repeat(number_of[plane.first_dart], np.diff(cell_start))
+    order, _ = _pairs.grouped.compiled(number_at, np.arange(n_cells), plane.n_faces)
+    place = np.empty(n_cells, np.int32)
+    place[order] = np.arange(n_cells, dtype=np.int32)
+    return place, number_at[order]
 
 
 def _regrouped(sizes: NDArray[np.int64], order: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

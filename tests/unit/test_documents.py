@@ -1,7 +1,7 @@
 """Every snippet of the documents runs: Python blocks as one session a file, console blocks with their output compared.
 
-A ``python`` block may hold doctest prompts (compared) or plain statements (run). In a ``console`` block each line that starts with
-``$ ninefold`` is run in the file's own folder and what follows must be its output; ``...`` stands for anything.
+A ``python`` block may hold doctest prompts (compared) or plain statements (run). In a ``console`` block each line that starts
+with ``$ ninefold`` is run in the file's own folder and what follows must be its output; ``...`` stands for anything.
 """
 
 import doctest
@@ -20,7 +20,8 @@ LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 def snippets(file):
-    return [(m[1], m[2], file.read_text("utf-8")[: m.start()].count("\n") + 1) for m in FENCE.finditer(file.read_text("utf-8"))]
+    text = file.read_text("utf-8")
+    return [(m[1], m[2], text[: m.start()].count("\n") + 1) for m in FENCE.finditer(text)]
 
 
 def run_python(code, session, name, line):
