@@ -160,6 +160,9 @@ def _assemble(said: _Lines, name: str, file: str) -> Definition:
     if not bases:
         raise BadInput(f"{file}: no base relation: give the converse of each, one 'a :: b' a line")
     index = {base: k for k, base in enumerate(bases)}
+    if len(index) < len(bases):
+        twice = next(base for k, base in enumerate(bases) if base in bases[:k])
+        raise BadInput(f"{said.settings['base_relations'][1]}: base relation {twice!r} is named twice")
 
     def look_up(base: str, where: str) -> int:
         if base not in index:
