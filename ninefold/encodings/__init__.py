@@ -16,9 +16,19 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .calculus import Calculus
+    from .cells import encode_cells
+    from .composition import SatComposition, compose_by_sat
+    from .direct import encode_direct
+    from .encoding import Encoding
     from .library import CALCULI, calculus_named
+    from .orders import ORDERS, Triangulation, triangulate
     from .rcc8 import RCC5, RCC8
-    from .subclasses import C8, H8, NP8, Q8, Subclass
+    from .registry import ENCODINGS, encode
+    from .sat import DEFAULT_SOLVER, SOLVERS, SatSolver, open_solver
+    from .splitting import encode_splitting
+    from .subclasses import C8, H5, H8, NP8, Q8, Subclass
+    from .support import encode_support
+    from .triangulated import encode_triangulated
 
     ALLEN: Calculus
     POINT: Calculus
@@ -27,28 +37,64 @@ __all__ = [
     "ALLEN",
     "C8",
     "CALCULI",
+    "DEFAULT_SOLVER",
+    "ENCODINGS",
+    "H5",
     "H8",
     "NP8",
+    "ORDERS",
     "POINT",
     "Q8",
     "RCC5",
     "RCC8",
+    "SOLVERS",
     "Calculus",
+    "Encoding",
+    "SatComposition",
+    "SatSolver",
     "Subclass",
+    "Triangulation",
     "calculus_named",
+    "compose_by_sat",
+    "encode",
+    "encode_cells",
+    "encode_direct",
+    "encode_splitting",
+    "encode_support",
+    "encode_triangulated",
+    "open_solver",
+    "triangulate",
 ]
 
 _HOME = {
     "C8": "subclasses",
     "CALCULI": "library",
     "Calculus": "calculus",
+    "DEFAULT_SOLVER": "sat",
+    "ENCODINGS": "registry",
+    "Encoding": "encoding",
+    "H5": "subclasses",
     "H8": "subclasses",
     "NP8": "subclasses",
+    "ORDERS": "orders",
     "Q8": "subclasses",
     "RCC5": "rcc8",
     "RCC8": "rcc8",
+    "SOLVERS": "sat",
+    "SatComposition": "composition",
+    "SatSolver": "sat",
     "Subclass": "subclasses",
+    "Triangulation": "orders",
     "calculus_named": "library",
+    "compose_by_sat": "composition",
+    "encode": "registry",
+    "encode_cells": "cells",
+    "encode_direct": "direct",
+    "encode_splitting": "splitting",
+    "encode_support": "support",
+    "encode_triangulated": "triangulated",
+    "open_solver": "sat",
+    "triangulate": "orders",
 }
 
 

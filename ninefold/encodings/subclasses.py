@@ -1,8 +1,10 @@
-"""The maximal tractable subclasses of RCC-8: H8, Q8 and C8.
+"""The maximal tractable subclasses of RCC-8, H8, Q8 and C8, and the one of RCC-5.
 
 A network all of whose relations lie in one of these three is decided by algebraic closure alone. They are the only
 maximal tractable sets of RCC-8 relations that hold every base relation, and all three avoid the 76 relations of NP8,
 any of which makes reasoning NP-hard together with the base relations. The sizes count the empty relation.
+
+RCC-5 has one that holds every base relation, here called H5; it has 28 members.
 
 A relation outside a subclass is a union of a few relations inside it, so a search need only try those, not every base
 relation; `Subclass.split` names them.
@@ -23,6 +25,7 @@ References
 J. Renz and B. Nebel, "On the complexity of qualitative spatial reasoning: a maximal tractable fragment of the region
 connection calculus", Artificial Intelligence 108, 1999 (H8).
 J. Renz, "Maximal tractable fragments of the region connection calculus: a complete analysis", IJCAI 1999 (Q8, C8).
+P. Jonsson and T. Drakengren, "A complete classification of tractability in RCC-5", JAIR 6, 1997 (H5).
 """
 
 from __future__ import annotations
@@ -40,7 +43,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["C8", "H8", "NP8", "Q8", "Subclass"]
+__all__ = ["C8", "H5", "H8", "NP8", "Q8", "Subclass"]
 
 DC, EC, PO, TPP, NTPP, TPPi, NTPPi, EQ = (1 << k for k in range(8))
 
@@ -156,3 +159,6 @@ Q8 = _subclass("Q8", _without_po(EQ, _PARTS))
 
 C8 = _subclass("C8", _without_po(EC, _PARTS | EQ))
 """The 158 relations of C8."""
+
+H5 = Subclass("H5", "rcc5", 5, frozenset(r for r in range(32) if not (r & 0b00100 and r & 0b01000 and not r & 0b00010)))
+"""The 28 relations of RCC-5 that do not jump over PO from PP to PPi."""
