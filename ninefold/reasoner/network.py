@@ -254,7 +254,7 @@ class Network:
         mask = self._calculus.relation(relations)
         if not mask:
             raise BadInput(f"the statement about {key_a!r} and {key_b!r} allows no relation at all")
-        if key_a == key_b and mask & self._calculus.identity != self._calculus.identity:
+        if key_a == key_b and not mask & self._calculus.identity:
             equal, said = self._calculus.text(self._calculus.identity), self._calculus.text(mask)
             raise BadInput(f"{key_a!r} cannot be {said} of itself: without {equal} no entity is related to itself")
         if label is not None and (not isinstance(label, str) or not label.strip()):
