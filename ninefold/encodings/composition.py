@@ -51,7 +51,7 @@ class SatComposition:
         self._solver = open_solver(solver, encoding.clauses)
 
     def compose(self, r: int, s: int) -> int:
-        """Return the composition of two relations; one model a base relation of it, and a last question.
+        """Return the composition of two relations; one model for each base relation of it.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class SatComposition:
         assumed = [-v for k, v in enumerate(self._left) if not r >> k & 1]
         assumed += [-v for k, v in enumerate(self._right) if not s >> k & 1]
         found = 0
-        while self._solver.solve(assumed):
+        while found != self._calculus.universal and self._solver.solve(assumed):
             model = self._solver.model()
             k = next(k for k, variable in enumerate(self._whole) if model[variable - 1] > 0)
             found |= 1 << k
