@@ -1,12 +1,34 @@
-"""Relations as bits, and questions about them as clauses.
+"""Relations as bits, and questions about them as clauses: what the reasoner stands on.
 
-Names load when they are first used, so that importing this package costs next to nothing.
+A relation is a set of base relations held as an int, one bit a base relation; names are only at the rim.
+
+=====================  ============================================================================================
+`calculus`             `Calculus`: base relations with converse, composition and identity, every law checked
+`library`              the calculi that come along: RCC-8, RCC-5, the point algebra, Allen's intervals
+`model`, `rcc8`        what RCC relations say of pairs of cells, and the tables derived from that
+`composition`          composition by SAT from the same model
+`subclasses`           the maximal tractable subclasses H8, Q8, C8 (and H5 of RCC-5), and splits into them
+`encoding`             what an encoding is: clauses, variables, decode
+`direct`, `support`    forbidden triples; what supports what
+`triangulated`         support on a chordal completion, with the orders of `orders`
+`splitting`            Horn clauses but for a choice between tractable parts
+`cells`                the regions themselves, without a composition table
+`sat`                  SAT solvers behind one Protocol
+=====================  ============================================================================================
+
+Nothing here knows of networks with names, of maps or of geometry: entities are numbers, a network is triples
+``(i, j, mask)``. Names load when they are first used, so that importing this package costs next to nothing.
 
 Examples
 --------
->>> from ninefold.encodings import RCC8
->>> RCC8.names(RCC8.compose(RCC8.relation("inside"), RCC8.relation("disjoint")))
-('DC',)
+Kitchen (0) inside house (1), house disjoint from garden (2), and yet kitchen meets garden:
+
+>>> from ninefold.encodings import RCC8, encode, open_solver
+>>> inside, disjoint, meet = map(RCC8.relation, ("inside", "disjoint", "meet"))
+>>> encoding = encode("support", RCC8, 3, [(0, 1, inside), (1, 2, disjoint), (0, 2, meet)])
+>>> with open_solver("cadical195", encoding.clauses) as solver:
+...     solver.solve()
+False
 """
 
 from __future__ import annotations

@@ -229,7 +229,7 @@ class Network:
         Parameters
         ----------
         a, b
-            Names of entities; new ones are added.
+            Names of entities, without the spaces around them; new ones are added.
         relations
             Names in one string or several, or a mask; see `Calculus.relation`.
         label
@@ -257,8 +257,10 @@ class Network:
         if key_a == key_b and not mask & self._calculus.identity:
             equal, said = self._calculus.text(self._calculus.identity), self._calculus.text(mask)
             raise BadInput(f"{key_a!r} cannot be {said} of itself: without {equal} no entity is related to itself")
-        if label is not None and (not isinstance(label, str) or not label.strip()):
-            raise BadInput(f"a label is a non-empty string or None, not {label!r}")
+        if label is not None:
+            if not isinstance(label, str) or not label.strip():
+                raise BadInput(f"a label is a non-empty string or None, not {label!r}")
+            label = label.strip()
         cost = _weight(weight)
         for key in (key_a, key_b):
             if key not in self._index:
@@ -372,7 +374,7 @@ class Network:
 
 def _entity(name: str | int) -> str:
     if isinstance(name, str) and name.strip():
-        return name
+        return name.strip()
     if isinstance(name, int | np.integer) and not isinstance(name, bool):
         return str(name)
     raise BadInput(f"an entity is named by a non-empty string or an integer, not {name!r}")
@@ -383,6 +385,10 @@ def _weight(weight: float | None) -> float | None:
         return None
     if isinstance(weight, bool) or not isinstance(weight, int | float | np.integer | np.floating):
         raise BadInput(f"a weight is a number or None, not {weight!r}")
-    if math.isnan(weight) or weight < 0:
+    try:
+        cost = float(weight)
+    except OverflowError:
+        raise BadInput("a weight is at most 1.8e308; math.inf makes a statement hard") from None
+    if math.isnan(cost) or cost < 0:
         raise BadInput(f"a weight is not negative; math.inf makes a statement hard: {weight!r} was given")
-    return float(weight)
+    return cost
