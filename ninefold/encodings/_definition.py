@@ -90,9 +90,7 @@ def _text_of(path: Path, where: str) -> str:
     except OSError as error:
         raise BadInput(f"{told}cannot read {path}: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise BadInput(
-            f"{told}{path} is not UTF-8 text: byte {error.start} is 0x{error.object[error.start]:02x}"
-        ) from None
+        raise BadInput(f"{told}{path} is not UTF-8 text: byte {error.start} is 0x{error.object[error.start]:02x}") from None
     except ValueError as error:  # a null character in the path
         raise BadInput(f"{told}cannot read {str(path)!r}: {error}") from None
 
@@ -116,9 +114,7 @@ def _setting(said: _Lines, line: str, where: str) -> None:
     key, _, value = line.partition(" ")
     value = value.strip()
     if key not in _KEYS:
-        raise BadInput(
-            f"{where}: {line!r} is neither a setting ({', '.join(_KEYS)}) nor 'a :: b' nor 'a : b :: ( c d )'"
-        )
+        raise BadInput(f"{where}: {line!r} is neither a setting ({', '.join(_KEYS)}) nor 'a :: b' nor 'a : b :: ( c d )'")
     if not value:
         raise BadInput(f"{where}: {key} has no value")
     if key == "alias":
@@ -172,9 +168,7 @@ def _assemble(said: _Lines, name: str, file: str) -> Definition:
     if "calculus_size" in said.settings:
         size, where = said.settings["calculus_size"]
         if size != str(len(bases)):
-            raise BadInput(
-                f"{where}: calculus_size is {size}, but there are {len(bases)} base relations: {' '.join(bases)}"
-            )
+            raise BadInput(f"{where}: calculus_size is {size}, but there are {len(bases)} base relations: {' '.join(bases)}")
     if "identity" not in said.settings:
         raise BadInput(f"{file}: no identity: add a line 'identity' with the base relation that means equal")
     words, where = said.settings["identity"]

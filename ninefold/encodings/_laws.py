@@ -66,9 +66,7 @@ def check(
     for k in range(b):
         back = int(converse[converse[k]])
         if back != k:
-            raise fail(
-                f"converse is no involution: {bases[k]}~ is {bases[converse[k]]}, whose converse is {bases[back]}"
-            )
+            raise fail(f"converse is no involution: {bases[k]}~ is {bases[converse[k]]}, whose converse is {bases[back]}")
     for k in range(b):
         if identity >> k & 1 and not identity >> int(converse[k]) & 1:
             raise fail(f"the identity holds {bases[k]} but not its converse {bases[converse[k]]}")

@@ -103,9 +103,7 @@ class Calculus:
     def __post_init__(self) -> None:
         b = len(self.bases)
         if b > MAX_BASES:
-            raise TooLarge(
-                f"calculus {self.name!r} has {b} base relations; a relation is one word, so at most {MAX_BASES}"
-            )
+            raise TooLarge(f"calculus {self.name!r} has {b} base relations; a relation is one word, so at most {MAX_BASES}")
         _laws.check_names(self.name, self.bases)
         converse = np.array(self.base_converse, dtype=np.intp)
         table = np.array(self.base_composition, dtype=np.uint64)

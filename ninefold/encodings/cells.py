@@ -76,9 +76,7 @@ def encode_cells(calculus: Calculus, n: int, constraints: Iterable[Constraint]) 
     n_vars = len(labels.variables)
 
     # One island a region, for being non-empty, then as many a pair as its most demanding base relation needs.
-    islands = {
-        (i, j): max((len(model[k].somewhere) for k, _ in labels.bases(i, j)), default=0) for i, j in labels.labels
-    }
+    islands = {(i, j): max((len(model[k].somewhere) for k, _ in labels.bases(i, j)), default=0) for i, j in labels.labels}
     n_islands = n + sum(islands.values())
     first_cell = n_vars + 1
 

@@ -146,9 +146,7 @@ def holds(meaning: BaseMeaning, x: NDArray[np.integer], y: NDArray[np.integer]) 
     return all(matches(pattern, either_way=True)[x, y].any() for pattern in meaning.somewhere)
 
 
-def relation_between(
-    x: NDArray[np.integer], y: NDArray[np.integer], model: tuple[BaseMeaning, ...] = RCC8_MODEL
-) -> int:
+def relation_between(x: NDArray[np.integer], y: NDArray[np.integer], model: tuple[BaseMeaning, ...] = RCC8_MODEL) -> int:
     """Return the bit of the one base relation of two non-empty regions given by their states.
 
     Parameters

@@ -8,7 +8,7 @@ Finding the fewest is NP-hard, so greedy rules choose the next vertex:
 order               next vertex                                                  in Bodlaender and Koster
 ==================  ===========================================================  ====================================
 ``min-fill``        fewest new edges, then fewest neighbours                     GreedyFillIn
-``greedy-fill-in``  fewest new edges and neighbours together, then neighbours    GreedyDegree+FillIn
+``greedy-fill-in``  fewest new edges and neighbours together, then neighbours    GreedyDegree and fill-in, summed
 ``min-degree``      fewest neighbours                                            GreedyDegree
 ==================  ===========================================================  ====================================
 
@@ -138,9 +138,7 @@ def triangulate(n: int, edges: Iterable[tuple[int, int]], order: str = "min-fill
                 cost[u] = new
                 heappush(queue, (new, u))
     chordal.update(fill)
-    return Triangulation(
-        n, tuple(eliminated), tuple(sorted(chordal)), tuple(sorted(fill)), tuple(sorted(triangles)), width
-    )
+    return Triangulation(n, tuple(eliminated), tuple(sorted(chordal)), tuple(sorted(fill)), tuple(sorted(triangles)), width)
 
 
 def _cost(adjacent: list[set[int]], v: int, order: str) -> tuple[int, int]:

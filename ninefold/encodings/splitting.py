@@ -83,9 +83,7 @@ _RCC8_THEORY = HornTheory(
     subclass=H8,
     atoms=_ATOMS8,
     meaning=tuple(
-        map(
-            frozenset, ([], ["C"], "CO", "COP", "COPN", ["C", "O", "Pi"], ["C", "O", "Pi", "Ni"], ["C", "O", "P", "Pi"])
-        )
+        map(frozenset, ([], ["C"], "CO", "COP", "COPN", ["C", "O", "Pi"], ["C", "O", "Pi", "Ni"], ["C", "O", "P", "Pi"]))
     ),
     pair_rules=(
         (("N",), "P"),
@@ -119,9 +117,7 @@ HORN_THEORIES = {"rcc8": _RCC8_THEORY, "rcc5": _RCC5_THEORY}
 """The calculi that can be split, by name."""
 
 
-def encode_splitting(
-    calculus: Calculus, n: int, constraints: Iterable[Constraint], *, order: str | None = None
-) -> Encoding:
+def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constraint], *, order: str | None = None) -> Encoding:
     """Encode a network by Horn clauses and, where a label is outside the subclass, a choice between its parts.
 
     Parameters
@@ -200,9 +196,7 @@ def encode_splitting(
     def decode(model: Sequence[int]) -> dict[tuple[int, int], int]:
         true = {literal for literal in model if literal > 0}
         base = {held: k for k, held in enumerate(theory.meaning)}
-        return {
-            (i, j): 1 << base[frozenset(name for name in theory.atoms if atom[name, i, j] in true)] for i, j in edges
-        }
+        return {(i, j): 1 << base[frozenset(name for name in theory.atoms if atom[name, i, j] in true)] for i, j in edges}
 
     return Encoding("splitting", calculus, n, n_vars, tuple(clauses), variables, decode)
 

@@ -105,9 +105,7 @@ def _network(
     used = {index for i, j, *_ in statements for index in (i, j)}
     for i, j, _, _, number in statements:
         if max(i, j) > highest:
-            raise BadInput(
-                f"{file}, line {number}: index {max(i, j)} is above {highest}, which line 1 gives as the highest"
-            )
+            raise BadInput(f"{file}, line {number}: index {max(i, j)} is above {highest}, which line 1 gives as the highest")
     names = extra.get("entities")
     n = highest + 1
     if names is not None:
@@ -116,9 +114,7 @@ def _network(
     elif n > 1 and highest not in used and max(used, default=0) == highest - 1:
         if len(used) == highest and 2 * len(statements) >= _FILLED * highest:
             n = highest
-            notes.append(
-                f"{file}: the first number {highest} is read as the number of entities, as {highest} is unused"
-            )
+            notes.append(f"{file}: the first number {highest} is read as the number of entities, as {highest} is unused")
         else:
             notes.append(
                 f"{file}: the first number {highest} is read as the highest index, so entity {highest} is there "

@@ -341,9 +341,7 @@ class Network:
         """
         chosen = sorted(set(keep))
         if chosen and not 0 <= chosen[0] <= chosen[-1] < len(self._statements):
-            raise BadInput(
-                f"statements are numbered 0 to {len(self._statements) - 1}; {chosen[0]} to {chosen[-1]} asked"
-            )
+            raise BadInput(f"statements are numbered 0 to {len(self._statements) - 1}; {chosen[0]} to {chosen[-1]} asked")
         net = Network(self._calculus)
         net._index = dict(self._index)
         net._sorts = list(self._sorts)

@@ -209,8 +209,8 @@ def test_bad_networks_are_refused(name):
 
 
 def test_unknown_encoding_and_calculus():
-    with pytest.raises(UnknownName, match="there is no encoding named 'suport'; did you mean 'support'"):
-        encode("suport", RCC8, 2, [])
+    with pytest.raises(UnknownName, match="there is no encoding named 'supports'; did you mean 'support'"):
+        encode("supports", RCC8, 2, [])
     for name in REGIONS_ONLY:
         with pytest.raises(BadInput, match="use another encoding"):
             encode(name, ALLEN, 2, [])

@@ -13,8 +13,7 @@ from ninefold.encodings.model import RCC5_MODEL, RCC8_MODEL, relation_between
 # Columns: DC EC PO TPP NTPP TPPi NTPPi EQ.
 RCC8_PUBLISHED = {
     "DC": "* | DC EC PO TPP NTPP | DC EC PO TPP NTPP | DC EC PO TPP NTPP | DC EC PO TPP NTPP | DC | DC | DC",
-    "EC": "DC EC PO TPPi NTPPi | DC EC PO TPP TPPi EQ | DC EC PO TPP NTPP | EC PO TPP NTPP | PO TPP NTPP |"
-    " DC EC | DC | EC",
+    "EC": "DC EC PO TPPi NTPPi | DC EC PO TPP TPPi EQ | DC EC PO TPP NTPP | EC PO TPP NTPP | PO TPP NTPP | DC EC | DC | EC",
     "PO": "DC EC PO TPPi NTPPi | DC EC PO TPPi NTPPi | * | PO TPP NTPP | PO TPP NTPP | DC EC PO TPPi NTPPi |"
     " DC EC PO TPPi NTPPi | PO",
     "TPP": "DC | DC EC | DC EC PO TPP NTPP | TPP NTPP | NTPP | DC EC PO TPP TPPi EQ | DC EC PO TPPi NTPPi | TPP",
@@ -43,9 +42,10 @@ def test_derived_table_is_the_published_one(calculus, published):
     for a, row in published.items():
         for b, cell in zip(calculus.bases, row.split("|"), strict=True):
             want = calculus.universal if cell.strip() == "*" else calculus.relation(cell)
-            assert calculus.names(calculus.compose(calculus.relation(a), calculus.relation(b))) == calculus.names(
-                want
-            ), (a, b)
+            assert calculus.names(calculus.compose(calculus.relation(a), calculus.relation(b))) == calculus.names(want), (
+                a,
+                b,
+            )
 
 
 def test_number_of_possible_triples():

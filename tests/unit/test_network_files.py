@@ -165,9 +165,7 @@ def test_count_in_the_first_line_is_noticed_in_well_filled_files():
     pairs = [(i, j) for i in range(6) for j in range(i)]
     filled = "6 #csp\n" + "".join(f"{i} {j} ( PO )\n" for i, j in pairs) + ".\n"
     assert len(network_from_text(filled, "csp").entities) == 6
-    assert load_file("6", filled).notes == (
-        "net.csp: the first number 6 is read as the number of entities, as 6 is unused",
-    )
+    assert load_file("6", filled).notes == ("net.csp: the first number 6 is read as the number of entities, as 6 is unused",)
     gqr = "5" + filled[1:]
     assert network_from_text(gqr, "csp") == network_from_text(filled, "csp")
     assert load_file("5", gqr).notes == ()
@@ -227,7 +225,7 @@ def test_bad_csp(text, message):
     [
         ("", "text: empty; the first line is a,relations,b,weight,label"),
         ("a,b\n", "line 1: column 'relations' is missing"),
-        ("a,relations,b,wieght\n", "line 1: there is no column named 'wieght'; did you mean 'weight'"),
+        ("a,relations,b,weighs\n", "line 1: there is no column named 'weighs'; did you mean 'weight'"),
         ("a,relations,b,a\n", "line 1: column 'a' is there twice"),
         ("a,relations,b\nx,DC\n", "line 2: 2 fields, but the header has 3"),
         ("a,relations,b\nx,DC,y,2\n", "line 2: 4 fields, but the header has 3"),
@@ -259,7 +257,7 @@ def test_bad_csv(text, message):
         ('{"statements": [3]}', "text, statement 1: a statement is an object"),
         ('{"statements": [{"a": "x", "b": "y"}]}', "text, statement 1: 'relations' is missing"),
         ('{"statements": [{"a": "x", "b": "y", "relation": []}]}', "there is no key named 'relation'; did you mean"),
-        ('{"statments": []}', "text: there is no key named 'statments'; did you mean 'statements'"),
+        ('{"statement": []}', "text: there is no key named 'statement'; did you mean 'statements'"),
         ('{"calculus": 8, "statements": []}', "text: 'calculus' is a name, not 8"),
         ('{"calculus": "rcc9", "statements": []}', "text: there is no calculus named 'rcc9'; did you mean 'rcc8'"),
         ('{"statements": [], "statements": []}', "text: key 'statements' is there twice in one object"),
