@@ -88,13 +88,15 @@ def write(net: Network) -> str:
     -----
     The calculus is not in it: name it when the file is read, unless it is RCC-8.
     """
-    out = io.StringIO(newline="")
-    rows = csv.writer(out, lineterminator="\n")
-    rows.writerow(COLUMNS)
+    rows = [COLUMNS]
     for s in net.statements:
         weight = "" if s.weight is None else repr(s.weight).removesuffix(".0")
-        rows.writerow([s.a, net.calculus.text(s.mask), s.b, weight, s.label or ""])
+        rows.append((s.a, net.calculus.text(s.mask), s.b, weight, s.label or ""))
     spoken = {name for s in net.statements for name in (s.a, s.b)}
     equal = net.calculus.text(net.calculus.identity)
-    rows.writerows([name, equal, name, "", ""] for name in net.entities if name not in spoken)
+    rows.extend((name, equal, name, "", "") for name in net.entities if name not in spoken)
+    # A carriage return ends a row when it is read, but the csv module does not see to its quotes by itself.
+    careful = any("\r" in cell for row in rows for cell in row)
+    out = io.StringIO(newline="")
+    csv.writer(out, lineterminator="\n", quoting=csv.QUOTE_ALL if careful else csv.QUOTE_MINIMAL).writerows(rows)
     return out.getvalue()

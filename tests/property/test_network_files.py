@@ -2,7 +2,7 @@
 
 import math
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ninefold.encodings import POINT, RCC8
@@ -28,6 +28,12 @@ def networks(draw, calculus=RCC8):
     return net
 
 
+def carriage_return():
+    net = Network(RCC8)
+    net.add("a\rb", "c\nd", "DC", label='"\r\n"')
+    return net
+
+
 @settings(deadline=None)
 @given(networks())
 def test_json_round_trips(net):
@@ -42,6 +48,7 @@ def test_csp_round_trips(net):
 
 @settings(deadline=None)
 @given(networks())
+@example(carriage_return())
 def test_csv_keeps_statements_and_names(net):
     again = network_from_text(network_to_text(net, "csv"), "csv")
     assert again.statements[: net.n_statements] == net.statements
