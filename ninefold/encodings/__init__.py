@@ -13,6 +13,7 @@ A relation is a set of base relations held as an int, one bit a base relation; n
 `triangulated`         support on a chordal completion, with the orders of `orders`
 `splitting`            Horn clauses but for a choice between tractable parts
 `cells`                the regions themselves, without a composition table
+`registry`             `encode`: the encodings by name
 `sat`                  SAT solvers behind one Protocol
 =====================  ============================================================================================
 

@@ -27,8 +27,8 @@ def check_names(calculus: str, bases: tuple[str, ...]) -> None:
     if twice:
         raise BadInput(f"calculus {calculus!r}: base relation {twice[0]!r} is named twice")
     for base in bases:
-        if not base or any(c.isspace() or c in ",|()" for c in base):
-            raise BadInput(f"calculus {calculus!r}: {base!r} cannot be a name: no spaces, commas, bars or parentheses")
+        if not base or any(c.isspace() or c in ",()" for c in base):
+            raise BadInput(f"calculus {calculus!r}: {base!r} cannot be a name: no spaces, commas or parentheses")
 
 
 def check(

@@ -46,7 +46,7 @@ TABLE_BASES = 8
 """Most base relations for which composition is tabulated for all pairs of relations (64 KiB at eight)."""
 
 _MEMO_LIMIT = 1 << 17
-_SEPARATORS = re.compile(r"[\s,|]+")
+_SEPARATORS = re.compile(r"[\s,]+")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,8 +102,7 @@ class Calculus:
 
     def __post_init__(self) -> None:
         b = len(self.bases)
-        if b > MAX_BASES:
-            raise TooLarge(f"calculus {self.name!r} has {b} base relations; a relation is one word, so at most {MAX_BASES}")
+        _check_size(self.name, b)
         _laws.check_names(self.name, self.bases)
         converse = np.array(self.base_converse, dtype=np.intp)
         table = np.array(self.base_composition, dtype=np.uint64)
@@ -133,6 +132,7 @@ class Calculus:
     @classmethod
     def from_definition(cls, definition: Definition) -> Calculus:
         """Make the calculus that a parsed definition describes, checking every law."""
+        _check_size(definition.name, len(definition.bases))
         return cls(
             name=definition.name,
             bases=definition.bases,
@@ -217,8 +217,11 @@ class Calculus:
         for word in words:
             if not isinstance(word, str):
                 raise BadInput(f"a relation of {self.name} is named by a string, not {word!r}")
-            for name in filter(None, _SEPARATORS.split(word)):
-                mask |= self._base_mask(name)
+            for part in filter(None, _SEPARATORS.split(word)):
+                # "|" separates too, unless it is (in) the name of a relation
+                names = [part] if part in self._masks else filter(None, part.split("|"))
+                for name in names:
+                    mask |= self._base_mask(name)
         if not mask:
             raise BadInput(f"the relation set {relations!r} is empty: name at least one of {' '.join(self.bases)}")
         return mask
@@ -291,6 +294,11 @@ class Calculus:
     def __reduce__(self) -> tuple[Any, ...]:
         parts = (self.name, self.bases, self.identity, self.base_converse, self.base_composition, self.aliases)
         return (Calculus, parts)
+
+
+def _check_size(name: str, b: int) -> None:
+    if b > MAX_BASES:
+        raise TooLarge(f"calculus {name!r} has {b} base relations; a relation is one word, so at most {MAX_BASES}")
 
 
 def _mask_dtype(b: int) -> Any:

@@ -41,6 +41,9 @@ _EGENHOFER = (
     ("equal", "EQ"),
 )
 
+_GQR5 = (("DC", "DR"), ("PPC", "PPi"), ("=", "EQ"))
+"""What GQR's networks call relations of RCC-5."""
+
 
 def derive(name: str, model: tuple[BaseMeaning, ...], aliases: tuple[tuple[str, str], ...] = ()) -> Calculus:
     """Derive the calculus of a cell-pair model.
@@ -105,5 +108,5 @@ def _word(combinations: NDArray[np.bool_]) -> int:
 RCC8 = derive("rcc8", RCC8_MODEL, _EGENHOFER)
 """The region connection calculus with boundaries: ``DC EC PO TPP NTPP TPPi NTPPi EQ`` are bits 0 to 7."""
 
-RCC5 = derive("rcc5", RCC5_MODEL)
+RCC5 = derive("rcc5", RCC5_MODEL, _GQR5)
 """The region connection calculus without boundaries: ``DR PO PP PPi EQ`` are bits 0 to 4."""

@@ -8,7 +8,7 @@
     .
 
 The first number is the highest index, so this network has four entities, ``"0"`` to ``"3"``. Lines that start with
-``#`` are comments; a line that starts with a dot ends the network.
+``#`` are comments; a line that starts with a dot ends the network, and another may follow it in the file.
 
 Some tools put the number of entities there instead. Either reading is possible when exactly the highest index is never
 used. In a well-filled file an entity without a single statement is not credible (with d statements an entity, one in
@@ -55,24 +55,46 @@ _FILLED = 4.0
 
 
 def read(text: str, told: Calculus | None, file: str) -> tuple[Network, list[str]]:
-    """Parse one network; see `ninefold.io.networks.read_network`."""
+    """Parse a file of one network; see `ninefold.io.networks.read_network`."""
+    networks = _split(text)
+    if len(networks) > 1:
+        raise BadInput(
+            f"{file}, line {networks[1][0] + 1}: another network starts here, there are {len(networks)}; "
+            "split the file or read it with read_networks"
+        )
+    return _read(*networks[0], told, file)
+
+
+def read_all(text: str, told: Calculus | None, file: str) -> list[tuple[Network, list[str]]]:
+    """Parse all networks of a file; see `ninefold.io.networks.read_networks`."""
+    return [_read(skipped, lines, told, file) for skipped, lines in _split(text)]
+
+
+def _split(text: str) -> list[tuple[int, list[str]]]:
+    """Cut a file behind every line that starts with a dot; each network with the number of lines before it."""
+    networks: list[tuple[int, list[str]]] = []
+    start = 0
     lines = [line.strip() for line in text.split("\n")]
-    start, first = _first_line(lines, file)
-    highest = _index(first[1], f"{file}, line {start}")
+    for end, line in enumerate(lines, start=1):
+        if line.startswith("."):
+            networks.append((start, lines[start:end]))
+            start = end
+    rest = lines[start:]
+    if not networks or any(line and not line.startswith("#") for line in rest):
+        networks.append((start, rest))
+    return networks
+
+
+def _read(skipped: int, lines: list[str], told: Calculus | None, file: str) -> tuple[Network, list[str]]:
+    start, head = _first_line(skipped, lines, file)
+    highest = _index(head[1], f"{file}, line {start}")
     extra: dict[str, Any] = {}
     statements: list[tuple[int, int, str, str | None, int]] = []
-    end = None
-    for number, line in enumerate(lines[start:], start=start + 1):
+    for number, line in enumerate(lines[start - skipped :], start=start + 1):
         where = f"{file}, line {number}"
-        if not line:
+        if not line or line.startswith("."):
             continue
-        if end is not None:
-            if not line.startswith("#"):
-                raise BadInput(f"{where}: the network ended at line {end}; split a file of several networks")
-            continue
-        if line.startswith("."):
-            end = number
-        elif line.startswith(_MARK) and not statements:
+        if line.startswith(_MARK) and not statements:
             extra |= _extra(line, where)
         elif not line.startswith("#"):
             found = _LINE.fullmatch(line)
@@ -80,12 +102,12 @@ def read(text: str, told: Calculus | None, file: str) -> tuple[Network, list[str
                 raise BadInput(f"{where}: a statement is 'i j ( R1 R2 )', not {_shown(line)}")
             i, j = (_index(digits, where) for digits in found.groups()[:2])
             statements.append((i, j, found[3], found[4], number))
-    notes = [] if end is not None else [f"{file} has no final '.': it may have been cut off"]
-    return _network(highest, statements, extra, told, file, notes), notes
+    notes = [] if lines[-1].startswith(".") else [f"{file} has no final '.': it may have been cut off"]
+    return _network(highest, start, statements, extra, told, file, notes), notes
 
 
-def _first_line(lines: list[str], file: str) -> tuple[int, re.Match[str]]:
-    for number, line in enumerate(lines, start=1):
+def _first_line(skipped: int, lines: list[str], file: str) -> tuple[int, re.Match[str]]:
+    for number, line in enumerate(lines, start=skipped + 1):
         if line and not line.startswith("#"):
             found = _FIRST.fullmatch(line)
             if found is None:
@@ -96,6 +118,7 @@ def _first_line(lines: list[str], file: str) -> tuple[int, re.Match[str]]:
 
 def _network(
     highest: int,
+    first: int,
     statements: list[tuple[int, int, str, str | None, int]],
     extra: dict[str, Any],
     told: Calculus | None,
@@ -105,7 +128,7 @@ def _network(
     used = {index for i, j, *_ in statements for index in (i, j)}
     for i, j, _, _, number in statements:
         if max(i, j) > highest:
-            raise BadInput(f"{file}, line {number}: index {max(i, j)} is above {highest}, which line 1 gives as the highest")
+            raise BadInput(f"{file}, line {number}: index {max(i, j)} is above {highest}, the highest by line {first}")
     names = extra.get("entities")
     n = highest + 1
     if names is not None:

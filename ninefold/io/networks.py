@@ -47,6 +47,7 @@ __all__ = [
     "network_from_text",
     "network_to_text",
     "read_network",
+    "read_networks",
     "write_network",
 ]
 
@@ -104,10 +105,24 @@ def load_network(
     """Read a network with the reader's notes; see `read_network`."""
     file = Path(path)
     text = _text_of(file)
-    if kind is None:
-        suffix = file.suffix.lower().lstrip(".")
-        kind = suffix if suffix in _MODULES else _recognise(text, str(file))
-    return _parse(text, kind, calculus, str(file))
+    return _parse(text, kind or _kind(file, text), calculus, str(file))
+
+
+def read_networks(path: str | os.PathLike[str], *, calculus: Calculus | str | None = None) -> list[NetworkFile]:
+    """Read a GQR file that may hold several networks, in order; any other file is a list of one.
+
+    Raises
+    ------
+    BadInput, UnknownName, TooLarge
+        See `read_network`.
+    """
+    file = Path(path)
+    text = _text_of(file)
+    kind = _kind(file, text)
+    if kind != "csp":
+        return [_parse(text, kind, calculus, str(file))]
+    found = network_csp.read_all(text, _calculus(calculus), str(file))
+    return [NetworkFile(network, kind, tuple(notes)) for network, notes in found]
 
 
 def network_from_text(text: str, kind: str, *, calculus: Calculus | str | None = None) -> Network:
@@ -176,6 +191,11 @@ def _text_of(file: Path) -> str:
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise BadInput(f"{file}, line {line}: byte 0x{raw[error.start]:02x} is not UTF-8; save the file as UTF-8") from None
+
+
+def _kind(file: Path, text: str) -> str:
+    suffix = file.suffix.lower().lstrip(".")
+    return suffix if suffix in _MODULES else _recognise(text, str(file))
 
 
 def _recognise(text: str, file: str) -> str:

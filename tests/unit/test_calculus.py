@@ -41,6 +41,10 @@ def test_relation_reads_names_aliases_and_masks(words, bases):
     assert RCC8.names(mask) == tuple(bases.split())
 
 
+def test_rcc5_reads_the_names_of_gqr():
+    assert RCC5.names(RCC5.relation("DC PO PP PPC =")) == RCC5.bases
+
+
 def test_unknown_relation_suggests_near_ones():
     with pytest.raises(UnknownName, match=r"there is no relation named 'NTTP'; did you mean 'NTPP'") as error:
         RCC8.relation("DC NTTP")
@@ -213,6 +217,11 @@ def test_shapes_and_bits_are_checked():
         Calculus("x", ("<", "= ", ">"), 2, POINT.base_converse, POINT.base_composition)
     with pytest.raises(TooLarge, match="70 base relations"):
         Calculus("x", tuple(map(str, range(70))), 1, np.zeros(70), np.zeros((70, 70)))
+    names = [f"r{k}" for k in range(70)]
+    text = "identity r0\n" + "".join(f"{a} :: {a}\n" for a in names)
+    text += "".join(f"{a} : {b} :: ( r69 )\n" for a in names for b in names)
+    with pytest.raises(TooLarge, match="70 base relations"):
+        Calculus.from_text(text)
     with pytest.raises(UnknownName, match="'<<'"):
         Calculus("x", POINT.bases, 2, POINT.base_converse, POINT.base_composition, (("before", "<<"),))
 
@@ -237,6 +246,14 @@ def test_names_that_differ_only_in_case():
     assert calculus.relation("b") == 2
     assert calculus.relation("B") == 4
     assert calculus.relation("E") == 1
+
+
+def test_a_bar_may_be_a_name():
+    text = "identity =\n= :: =\n| :: |\n= : = :: ( = )\n= : | :: ( | )\n| : = :: ( | )\n| : | :: ( = | )\n"
+    calculus = Calculus.from_text(text)
+    assert calculus.relation("= |") == 3
+    assert calculus.relation("|") == 2
+    assert calculus.relation(calculus.text(3)) == 3
 
 
 def test_from_file_follows_gqr_references(tmp_path):
@@ -284,3 +301,14 @@ def test_unknown_attribute_of_the_package():
     with pytest.raises(AttributeError, match="has no attribute 'RCC9'"):
         _ = ninefold.encodings.RCC9
     assert "RCC8" in dir(ninefold.encodings)
+
+
+def test_sixty_four_base_relations():
+    """Differences modulo 64: the widest word a relation can be."""
+    b = 64
+    k = np.arange(b)
+    table = np.uint64(1) << ((k[:, None] + k) % b).astype(np.uint64)
+    calculus = Calculus("clock", tuple(f"+{x}" for x in k), 1, -k % b, table)
+    assert calculus.universal == 2**64 - 1
+    assert calculus.names(calculus.compose(calculus.relation("+60 +1"), calculus.relation("+5"))) == ("+1", "+6")
+    assert calculus.names(calculus.converse_of(calculus.relation("+1 +63 +0"))) == ("+0", "+1", "+63")

@@ -14,6 +14,7 @@ from ninefold.io.networks import (
     network_from_text,
     network_to_text,
     read_network,
+    read_networks,
     write_network,
 )
 from ninefold.reasoner.network import Network
@@ -205,7 +206,10 @@ def test_missing_end_is_noted():
         ("1\n0 1 ( DC NTTP )\n.", "text, line 2: there is no relation named 'NTTP'; did you mean 'NTPP'"),
         ("1\n0 1 ( < )\n.", "(the calculus is rcc8; point and allen know it: name the calculus)"),
         ("1\n0 0 ( DC )\n.", "text, line 2: '0' cannot be DC of itself"),
-        ("1\n0 1 ( DC )\n.\n\n1\n0 1 ( EC )\n.", "text, line 5: the network ended at line 3"),
+        (
+            "1\n0 1 ( DC )\n.\n\n1\n0 1 ( EC )\n.",
+            "text, line 4: another network starts here, there are 2; split the file or read it with read_networks",
+        ),
         ("1\n#@ {\n.", "text, line 2: a comment that starts with #@ holds JSON"),
         ("1\n#@ []\n.", "text, line 2: a comment that starts with #@ holds a JSON object"),
         ('1\n#@ {"entities": 3}\n.', "text, line 2: 'entities' is a list"),
@@ -317,6 +321,19 @@ def test_files_that_cannot_be_written(tmp_path):
         write_network(net, tmp_path / "net.csv")
     with pytest.raises(BadInput, match="without entities"):
         network_to_text(Network("rcc8"), "csp")
+
+
+def test_several_networks_in_one_file(tmp_path):
+    path = tmp_path / "several.csp"
+    path.write_text("1 # one\n0 1 ( DC )\n.\n\n# between\n2 # two\n0 1 ( EC )\n1 2 ( PO )\n.\n# end\n")
+    found = read_networks(path)
+    assert [file.network.n_statements for file in found] == [1, 2]
+    assert [file.network.n_entities for file in found] == [2, 3]
+    path.write_text("1\n0 1 ( DC )\n.\n1\n0 1 ( DC )\n1 2 ( PO )")
+    with pytest.raises(BadInput, match=r"several.csp, line 6: index 2 is above 1, the highest by line 4"):
+        read_networks(path)
+    (tmp_path / "one.csv").write_text(CSV)
+    assert len(read_networks(tmp_path / "one.csv")) == 1
 
 
 def test_told_calculus_is_taken():
