@@ -1,6 +1,6 @@
 """Every snippet of the documents runs: Python blocks as one session a file, console blocks with their output compared.
 
-A ``python`` block may hold doctest prompts (compared) or plain statements (run). In a ``console`` block each line that starts
+A ``python`` block may hold doctest prompts (compared) or plain statements (run). In a ``console`` block each line starting
 with ``$ ninefold`` is run in the file's own folder and what follows must be its output; ``...`` stands for anything.
 """
 
