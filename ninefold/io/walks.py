@@ -57,6 +57,7 @@ _FROM_YAW: dict[HeadingUnit, Callable[[float], float]] = {
     "bearing-deg": lambda yaw: (90.0 - degrees(yaw)) % 360.0,
 }
 _NUMBER = frozenset((int, float))
+_LINE_ENDS = frozenset(("\n", "", "\r\n"))
 
 
 def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None) -> Walk:
@@ -191,7 +192,8 @@ class WalkReader:
         self._samples = 0
         self._t = float("-inf")
         self._places: dict[str | int, str] = {}
-        self._decode = json.JSONDecoder(parse_constant=_reject_constant).decode
+        decoder: Any = json.JSONDecoder(parse_constant=_reject_constant)
+        self._decode, self._scan = decoder.decode, decoder.scan_once
         if header is not None:
             self._begin(header)
 
@@ -223,15 +225,19 @@ class WalkReader:
         """
         self.line += 1
         try:
-            found = self._decode(line.decode("utf-8"))
+            found = self._parsed(line.decode("utf-8"))
         except UnicodeDecodeError:
             self._fail("not UTF-8 text")
         except json.JSONDecodeError as error:
             if not line.strip():
                 return None
             self._fail(f"not JSON: {error.msg} at column {error.colno}")
-        except (ValueError, RecursionError) as error:  # a constant, an integer of thousands of digits, deep nesting
-            self._fail(str(error) if isinstance(error, BadInput) else f"not JSON that can be read: {error}")
+        except BadInput as error:
+            self._fail(str(error))
+        except ValueError:
+            self._fail("not JSON that can be read: a number of too many digits")
+        except RecursionError:
+            self._fail("not JSON that can be read: nested too deeply")
         if type(found) is not dict:
             self._fail(f"a line holds one JSON object, not {_short(found)}")
         if self._header is None:
@@ -246,6 +252,15 @@ class WalkReader:
             keys = ", ".join(map(repr, list(found)[:4])) or "nothing"
             self._fail(f'an event has "place", "heading" or "headings"; this one has {keys}')
         return event
+
+    def _parsed(self, text: str) -> Any:
+        try:
+            found, end = self._scan(text, 0)
+            if text[end:] in _LINE_ENDS:
+                return found
+        except StopIteration:
+            pass
+        return self._decode(text)  # twice as slow: allows white space, and says what is wrong
 
     def _begin(self, header: WalkHeader) -> None:
         if self._tolerance is not None and self._tolerance != header.tolerance:
@@ -302,13 +317,18 @@ class WalkReader:
             heading = found["heading"]
             if type(heading) not in _NUMBER:
                 self._fail(f'"heading" is a number, not {_short(heading)}')
-            yaws = self._yaws("heading", [heading])
-        elif "heading" in found:
+            t = self._time(found) if "t" in found else None
+            try:
+                samples = Samples((self._yaw(heading),), t)
+            except (OverflowError, ValueError):
+                self._fail('"heading" is not finite')
+            self._samples += 1
+            return samples
+        if "heading" in found:
             self._fail('"heading" and "headings" on one line; give one of them')
-        else:
-            yaws = self._yaws("headings", found["headings"])
-            if not yaws:
-                self._fail('"headings" is an empty list; a leg has at least one sample')
+        yaws = self._yaws("headings", found["headings"])
+        if not yaws:
+            self._fail('"headings" is an empty list; a leg has at least one sample')
         t = self._time(found)
         self._samples += 1
         return Samples(yaws, t)
