@@ -106,9 +106,9 @@ class Visit:
 
     def __post_init__(self) -> None:
         if type(self.place) is not str and self.place is not None:
-            object.__setattr__(self, "place", _label("place", self.place))
+            object.__setattr__(self, "place", _label("a place", self.place))
         if type(self.edge) is not str and self.edge is not None:
-            object.__setattr__(self, "edge", _label("edge", self.edge))
+            object.__setattr__(self, "edge", _label("an edge", self.edge))
         if self.exits is not None:
             if type(self.exits) is not tuple:
                 object.__setattr__(self, "exits", tuple(self.exits))
@@ -193,5 +193,5 @@ class Walk:
 
 def _label(kind: str, label: object) -> str:
     if isinstance(label, bool) or not isinstance(label, str | int):
-        raise WalkError(f"the name of a {kind} is a string, not {label!r}")
+        raise WalkError(f"the name of {kind} is a string, not {label!r}")
     return str(label)
