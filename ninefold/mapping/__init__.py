@@ -16,21 +16,35 @@ from __future__ import annotations
 
 from .graphs import bridges, cut_vertices, shortest_path
 from .heading import Heading, circular_mean, unwrap, wrap
+from .mapper import Closure, Mapper, build
 from .names import Names
 from .plane import PlaneMap
 from .sets import Line, Point, Region, Set
+from .simulated import Exploration, SimulatedWorld, explore
+from .walk import Event, Samples, Visit, Walk, WalkHeader
 
 __all__ = [
+    "Closure",
+    "Event",
+    "Exploration",
     "Heading",
     "Line",
+    "Mapper",
     "Names",
     "PlaneMap",
     "Point",
     "Region",
+    "Samples",
     "Set",
+    "SimulatedWorld",
+    "Visit",
+    "Walk",
+    "WalkHeader",
     "bridges",
+    "build",
     "circular_mean",
     "cut_vertices",
+    "explore",
     "shortest_path",
     "unwrap",
     "wrap",

@@ -1,0 +1,301 @@
+"""Walk logs: what is read, what is refused with which line, and that writing is whole or nothing."""
+
+import errno
+import json
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+
+from ninefold.errors import NinefoldError, WalkError
+from ninefold.io import walks
+from ninefold.io.walks import WalkReader, iter_events, read_header, read_walk, write_walk
+from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader
+
+try:
+    import resource
+except ImportError:
+    resource = None
+
+HEADER = '{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}'
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Write lines to a file, return its path."""
+
+    def write(*lines, header=HEADER, end="\n"):
+        path = tmp_path / "log.jsonl"
+        data = [line if isinstance(line, bytes) else line.encode() for line in ([header] if header else []) + list(lines)]
+        path.write_bytes(b"\n".join(data) + end.encode())
+        return path
+
+    return write
+
+
+def test_every_kind_of_event(log):
+    path = log(
+        '{"place": "hall", "exits": [0, 1.5], "t": 0, "colour": "red"}',
+        '{"heading": 0}',
+        '{"headings": [0.5, 1], "t": 2}',
+        "",
+        '{"place": 7, "edge": "door", "t": 2.5}',
+        '{"heading": -1.25}',
+        '{"place": null}',
+    )
+    events = (
+        Visit("hall", (Heading(0), Heading(1.5)), t=0.0),
+        Samples((0.0,)),
+        Samples((0.5, 1.0), 2.0),
+        Visit("7", edge="door", t=2.5),
+        Samples((-1.25,)),
+        Visit(None),
+    )
+    assert read_walk(path) == Walk(WalkHeader(), events)
+    assert tuple(iter_events(path)) == events
+
+
+def test_the_header_is_kept(log):
+    path = log(header='{"ninefold":"walk","version":1,"heading":"bearing-deg","compass":false,"tolerance":0.1,"robot":"r2"}')
+    assert read_walk(path).header == WalkHeader("bearing-deg", compass=False, tolerance=0.1, extra={"robot": "r2"})
+    assert read_header(path) == read_walk(path).header
+    assert read_walk(path, tolerance=0.05).header.tolerance == 0.05
+
+
+@pytest.mark.parametrize(
+    ("unit", "east", "north"), [("yaw-rad", 0, math.pi / 2), ("yaw-deg", 0, 90), ("bearing-deg", 90, 0)]
+)
+def test_units(log, unit, east, north):
+    path = log(
+        json.dumps({"place": "a", "exits": [north]}),
+        json.dumps({"heading": east}),
+        json.dumps({"headings": [north, east]}),
+        header=json.dumps({"ninefold": "walk", "version": 1, "heading": unit}),
+    )
+    visit, one, two = read_walk(path).events
+    assert visit.exits[0].yaw == pytest.approx(math.pi / 2)
+    assert one.yaw == pytest.approx((0.0,))
+    assert two.yaw == pytest.approx((math.pi / 2, 0.0))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b'\xef\xbb\xbf{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}',
+        f"  {HEADER}  ",
+        f"\n\n{HEADER}",
+        f"{HEADER}\r",
+    ],
+)
+def test_a_byte_order_mark_and_white_space_are_let_pass(log, line):
+    assert read_walk(log('{"place": "a"}\r', header=line, end="")).places == ("a",)
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        ("", "the file is empty|the first line is no walk header"),
+        ('{"place": "a"}', "log.jsonl:1: the first line is no walk header"),
+        ('{"ninefold": "atlas", "version": 1, "heading": "yaw-rad"}', "the first line is no walk header"),
+        ("[]", r"log.jsonl:1: a line holds one JSON object, not \[\]"),
+        ("walk", "log.jsonl:1: not JSON: Expecting value at column 1"),
+        ('{"ninefold": "walk", "version": 2, "heading": "yaw-rad"}', "format version 2, newer than 1; update ninefold"),
+        ('{"ninefold": "walk", "version": "1", "heading": "yaw-rad"}', "\"version\" is 1, not '1'"),
+        ('{"ninefold": "walk", "version": 0, "heading": "yaw-rad"}', '"version" is 1, not 0'),
+        ('{"ninefold": "walk", "version": true, "heading": "yaw-rad"}', '"version" is 1, not True'),
+        ('{"ninefold": "walk", "heading": "yaw-rad"}', '"version" is 1, not None'),
+        ('{"ninefold": "walk", "version": 1}', 'the header lacks "heading"'),
+        ('{"ninefold": "walk", "version": 1, "heading": "rad"}', "'bearing-deg', not 'rad'"),
+        ('{"ninefold": "walk", "version": 1, "heading": ["rad"]}', r"\"heading\" cannot be \['rad'\]"),
+        ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "compass": "yes"}', '"compass" is true or false'),
+        ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": 2}', "a tolerance is an angle"),
+        ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": NaN}', "NaN is no number"),
+        ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": 1e-999}', "a tolerance is an angle"),
+    ],
+)
+def test_headers_refused(log, header, message):
+    path = log('{"place": "a"}' if header else "", header=header)
+    for read in (read_walk, read_header, lambda p: list(iter_events(p))):
+        with pytest.raises(WalkError, match=message) as caught:
+            read(path)
+        assert "\n" not in str(caught.value)
+
+
+A = '{"place": "a"}'
+H = '{"heading": 1}'
+
+
+@pytest.mark.parametrize(
+    ("lines", "line", "message"),
+    [
+        ([A, "{"], 3, "not JSON: Expecting property name"),
+        ([A, '{"heading": }'], 3, "not JSON: Expecting value at column 13"),
+        ([A, '{"heading": 1} {"heading": 2}'], 3, "not JSON: Extra data at column 16"),
+        ([A, '{"heading": ' + "9" * 5000 + "}"], 3, "too many digits"),
+        ([A, '{"heading": ' + "[" * 100_000], 3, "nested too deeply"),
+        ([A, b'{"heading": "\xff"}'], 3, "not UTF-8 text"),
+        ([A, b"\x00\x01\x02"], 3, "not JSON"),
+        ([A, "3"], 3, "a line holds one JSON object, not 3"),
+        ([A, '{"site": "b"}'], 3, 'an event has "place", "heading" or "headings"; this one has \'site\''),
+        ([A, "{}"], 3, "this one has nothing"),
+        ([A, '{"heading": NaN}'], 3, "NaN is no number that a walk can hold; headings are finite"),
+        ([A, '{"heading": -Infinity}'], 3, "-Infinity is no number"),
+        ([A, '{"heading": 1e999}'], 3, '"heading" is not finite'),
+        ([A, '{"heading": ' + "9" * 400 + "}"], 3, '"heading" is not finite'),
+        ([A, '{"heading": true}'], 3, '"heading" is a number, not True'),
+        ([A, '{"heading": "north"}'], 3, "\"heading\" is a number, not 'north'"),
+        ([A, '{"heading": null}'], 3, '"heading" is a number, not None'),
+        ([A, '{"headings": []}'], 3, '"headings" is an empty list'),
+        ([A, '{"headings": 1}'], 3, '"headings" is a list of numbers, not 1'),
+        ([A, '{"headings": [1, "2"]}'], 3, '"headings" is a list of numbers, not'),
+        ([A, '{"headings": [1, -1e999]}'], 3, '"headings" holds a number that is not finite'),
+        ([A, '{"heading": 1, "headings": [1]}'], 3, "give one of them"),
+        (['{"place": "a", "heading": 1}'], 2, "a place and a heading on one line"),
+        (['{"place": 1.5}'], 2, '"place" is a name, not 1.5'),
+        (['{"place": true}'], 2, '"place" is a name, not True'),
+        (['{"place": ["a"]}'], 2, '"place" is a name, not'),
+        (['{"place": ""}'], 2, "a vertex name is printable text"),
+        (['{"place": "a\\u0007"}'], 2, "a vertex name is printable text"),
+        (['{"place": "\\ud800"}'], 2, "cannot be written as text"),
+        ([A, H, '{"place": "b", "edge": {}}'], 4, '"edge" is a name, not'),
+        (['{"place": "a", "exits": 1}'], 2, '"exits" is a list of numbers'),
+        (['{"place": "a", "exits": [1e999]}'], 2, '"exits" holds a number that is not finite'),
+        (['{"place": "a", "exits": [1, 2, 1.01]}'], 2, "two exits, 57.3 and 57.87 deg .* within the tolerance of 1.146 deg"),
+        (['{"place": "a", "exits": [3.14, -3.14]}'], 2, "two exits, .* are within the tolerance"),
+        (['{"place": "a", "t": "noon"}'], 2, "\"t\" is a number of seconds, not 'noon'"),
+        (['{"place": "a", "t": 1e999}'], 2, '"t" is not finite'),
+        (['{"place": "a", "t": 1' + "0" * 400 + "}"], 2, '"t" is not finite'),
+        (['{"place": "a", "t": 5}', '{"heading": 1, "t": 4.5}'], 3, '"t" goes back from 5 to 4.5: events out of order'),
+        ([H], 2, "a heading before the first place"),
+        ([A, '{"place": "b"}'], 3, "two places with no heading between them"),
+    ],
+)
+def test_lines_refused(log, lines, line, message):
+    with pytest.raises(WalkError, match=message) as caught:
+        read_walk(log(*lines))
+    assert caught.value.where.endswith(f"log.jsonl:{line}")
+    assert str(caught.value).startswith(caught.value.where)
+    assert "\n" not in str(caught.value)
+
+
+def test_blank_lines_count_in_line_numbers(log):
+    with pytest.raises(WalkError, match=r"log\.jsonl:5: "):
+        read_walk(log("", A, "", "nonsense"))
+
+
+def test_no_file_no_folder_no_name(tmp_path):
+    with pytest.raises(WalkError, match=r"missing\.jsonl: the walk cannot be read: No such file or directory"):
+        read_walk(tmp_path / "missing.jsonl")
+    with pytest.raises(WalkError, match="cannot be read: Is a directory"):
+        read_walk(tmp_path)
+    with pytest.raises(WalkError, match="cannot be read"):
+        read_walk("a\0b")
+    empty = tmp_path / "empty.jsonl"
+    empty.touch()
+    with pytest.raises(WalkError, match=r"empty\.jsonl: the file is empty; a walk begins with a header line"):
+        read_walk(empty)
+
+
+WALK = Walk(
+    WalkHeader(extra={"robot": "r2", "über": [1, None]}),
+    (
+        Visit("hall", (Heading(0.1), Heading(-3.0)), t=1.0),
+        Samples((0.1, 2 / 3, 7.5)),
+        Visit("größer", (), "door\u2028", 3.5),
+        Samples((1e-300,), 4.0),
+        Visit(None),
+    ),
+)
+
+
+def test_writing_and_reading_gives_the_same_walk(tmp_path):
+    path = tmp_path / "walk.jsonl"
+    write_walk(WALK, path)
+    assert read_walk(path) == WALK
+    assert [p.name for p in tmp_path.iterdir()] == ["walk.jsonl"]
+
+
+@pytest.mark.parametrize("unit", ["yaw-deg", "bearing-deg"])
+def test_degrees_survive_to_rounding(tmp_path, unit):
+    path = tmp_path / "walk.jsonl"
+    write_walk(Walk(WalkHeader(unit), WALK.events), path)
+    again = read_walk(path)
+    assert again.header.heading == unit
+    assert again.places == WALK.places
+    assert [h.yaw for h in again.events[0].exits] == pytest.approx([h.yaw for h in WALK.events[0].exits], abs=1e-14)
+    turned = [(a - b) / (2 * math.pi) for a, b in zip(again.events[1].yaw, WALK.events[1].yaw, strict=True)]
+    assert turned == pytest.approx([round(x) for x in turned], abs=1e-14)
+
+
+def test_a_reader_can_go_on_from_a_header_stored_elsewhere():
+    reader = WalkReader("atlas", header=WalkHeader("bearing-deg"))
+    assert reader.take(b'{"place": "a", "exits": [90]}') == Visit("a", (Heading(0.0),))
+
+
+def test_an_old_file_stays_when_the_new_one_cannot_be_written(tmp_path, monkeypatch):
+    path = tmp_path / "walk.jsonl"
+    path.write_text("precious")
+
+    def full(descriptor):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(walks.os, "fsync", full)
+    with pytest.raises(WalkError, match=r"walk\.jsonl: the walk cannot be written: No space left on device"):
+        write_walk(WALK, path)
+    assert path.read_text() == "precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["walk.jsonl"]
+
+
+@pytest.mark.skipif(resource is None, reason="needs POSIX limits")
+def test_a_file_that_may_not_grow_for_real(tmp_path):
+    script = (
+        "import resource, sys; from ninefold.errors import WalkError; from ninefold.io.walks import write_walk;"
+        "from ninefold.mapping import *; walk = Walk(WalkHeader(), [Visit('a'), Samples((0.0,) * 10_000), Visit('b')]);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
+        "try: write_walk(walk, sys.argv[1])\n"
+        "except WalkError as error: print(error)"
+    )
+    path = tmp_path / "walk.jsonl"
+    path.write_text("precious")
+    ran = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True)
+    assert ran.stdout == f"{path}: the walk cannot be written: File too large\n"
+    assert path.read_text() == "precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["walk.jsonl"]
+
+
+def test_a_folder_that_does_not_exist(tmp_path):
+    with pytest.raises(WalkError, match="the walk cannot be written: No such file or directory"):
+        write_walk(WALK, tmp_path / "nowhere" / "walk.jsonl")
+
+
+@pytest.mark.skipif(resource is None, reason="needs POSIX permissions")
+def test_a_folder_that_is_read_only(tmp_path):
+    script = (
+        "import os, sys; from ninefold.errors import WalkError; from ninefold.io.walks import write_walk;"
+        "from ninefold.mapping import *; walk = Walk(WalkHeader(), [Visit('a')])\n"
+        "if os.geteuid() == 0: os.seteuid(65534)  # the superuser may write everywhere\n"
+        "try: write_walk(walk, sys.argv[1])\n"
+        "except WalkError as error: print(error)"
+    )
+    folder = tmp_path / "locked"
+    folder.mkdir(mode=0o555)
+    path = folder / "walk.jsonl"
+    ran = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True)
+    assert ran.stdout == f"{path}: the walk cannot be written: Permission denied\n"
+
+
+@pytest.mark.parametrize(
+    "walk",
+    [
+        Walk(WalkHeader(extra={"x": object()}), ()),
+        Walk(WalkHeader(extra={"x": math.nan}), ()),
+        Walk(WalkHeader(), (Visit("\ud800"),)),
+        Walk(WalkHeader(), (Visit("a", t=math.inf),)),
+    ],
+)
+def test_what_no_reader_would_take_is_not_written(tmp_path, walk):
+    with pytest.raises(NinefoldError, match="the walk cannot be written"):
+        write_walk(walk, tmp_path / "walk.jsonl")
+    assert list(tmp_path.iterdir()) == []
