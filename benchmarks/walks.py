@@ -6,13 +6,13 @@ recorder writes it. Times are the best of the runs; the walk is made and written
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.clock import row, title
 from ninefold.io.walks import iter_events, read_header, read_walk, write_walk
 from ninefold.mapping import Event, Mapper, Samples, SimulatedWorld, Visit, Walk, build, explore
 
@@ -88,20 +88,16 @@ def measure(legs: int, *, exits: bool, runs: int) -> dict[str, float]:
 
 
 def main() -> None:
-    """Print one row a size."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--legs", type=int, nargs="*", default=list(SIZES))
-    parser.add_argument("--runs", type=int, default=2)
-    options = parser.parse_args()
     measure(1_000, exits=True, runs=1)
-    columns = ("legs", "events", "edges", "closures", "exits", "read s", "step s", "plane s", "file to map s", "streamed s")
-    print("".join(f"{column:>14}" for column in (*columns, "step events/s")))
+    title("walk log to map", "events", "edges", "read", "step", "plane", "file to map", "streamed", "steps a second")
     for exits in (False, True):
-        for legs in options.legs:
-            row = measure(legs, exits=exits, runs=options.runs)
-            cells = [f"{row[key]:,.0f}" for key in columns[:4]] + ["yes" if exits else "no"]
-            cells += [f"{row[key.removesuffix(' s')]:.3f}" for key in columns[5:]]
-            print("".join(f"{cell:>14}" for cell in (*cells, f"{row['events'] / row['step']:,.0f}")))
+        for legs in SIZES:
+            found = measure(legs, exits=exits, runs=3)
+            stages = (f"{found[stage]:.3f} s" for stage in ("read", "step", "plane", "file to map", "streamed"))
+            row(
+                f"{found['legs']:,.0f} legs, {found['closures']:,.0f} closures, {'with' if exits else 'no'} exits",
+                *(f"{found['events']:,.0f}", f"{found['edges']:,.0f}", *stages, f"{found['events'] / found['step']:,.0f}"),
+            )
 
 
 if __name__ == "__main__":

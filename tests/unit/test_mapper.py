@@ -303,6 +303,8 @@ def test_two_darts_within_reach_are_both_named():
     message = "too close to an exit at 0 deg and an exit at 1.5 deg"
     refused(AmbiguousDart, message, Visit("a", exits(0, 1.5)), 0.5, "b")
     refused(AmbiguousDart, message, Visit("a", exits(0, 1.5)), 0, "b")
+    for yaw in (-0.5, 2):
+        refused(AmbiguousDart, "too close to an exit at .* and an exit at", Visit("a", exits(0, 1.5, 90, 180)), yaw, "b")
 
 
 def test_a_known_dart_that_leads_elsewhere():
