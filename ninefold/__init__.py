@@ -21,13 +21,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import encodings, errors, io, layout, mapping, reasoner
-    from .io import Atlas, read_map, read_walk
+    from .io import Atlas, read_map, read_network, read_walk
 
 __version__ = "0.1.0"
-__all__ = ["Atlas", "encodings", "errors", "io", "layout", "mapping", "read_map", "read_walk", "reasoner"]
+__all__ = ["Atlas", "encodings", "errors", "io", "layout", "mapping", "read_map", "read_network", "read_walk", "reasoner"]
 
 _PARTS = ("encodings", "errors", "io", "layout", "mapping", "reasoner")
-_SHORTCUTS = ("Atlas", "read_map", "read_walk")
+_SHORTCUTS = ("Atlas", "read_map", "read_network", "read_walk")
 
 
 def __getattr__(name: str) -> Any:

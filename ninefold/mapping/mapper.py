@@ -271,8 +271,8 @@ class Mapper:
         place, memory = event.place, self._memory
         if place is None:
             raise WalkError(
-                "a place that was not recognised; one map needs every place recognised (hypotheses lists the maps that "
-                "explain such a walk)"
+                "a place that was not recognised (null); one map needs every place named, so name it or leave the walk "
+                "out from here"
             )
         if self._at < 0:
             if event.edge is not None:
