@@ -1,9 +1,10 @@
 """Kernels that relate pairs of sets from their tables of stars.
 
-One set X is *stamped*: ``slot[cell]`` holds its entry, which is valid when it lies in the range of X, so nothing is ever
-cleared. Its partners are streamed past it. A set's signature tells which of 256 patches of the map it touches; its entries
-are sorted by cell, so they fall into one run a patch. Of two regions only the runs in common patches are streamed; two sets
-with no common patch are *apart*, and a search or two decides.
+The cells of the map are grouped in *blocks* of 64, and a set keeps one mask for every block it touches. One set X is
+*stamped*: ``slot[block]`` holds its block entry, which is valid when it lies in the range of X, so nothing is ever cleared,
+and all slots stay in the nearest cache. The blocks of its partners are streamed past it; the common bits of two masks are
+the shared cells, and counting the bits below gives their entries. A set's signature tells which of 256 patches of the map it
+touches; of two regions only the blocks in common patches are streamed, and two sets with no common patch are *apart*.
 
 The inner kernels are inlined and the outer ones allocate nothing and count no references, since passing arrays costs more
 than relating two short cycles. Codes are those of `ninefold.reasoner.relation`.
@@ -22,7 +23,7 @@ from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scratch", "Stars", "all_pairs", "cell_sets", "grouped", "listed_pairs", "patches"]
+__all__ = ["Scratch", "Stars", "all_pairs", "blocks", "cell_sets", "grouped", "listed_pairs"]
 
 ALL_EIGHT = II | IB | IE | BI | BB | BE | EI | EB
 NONE = np.uint64(0)
@@ -45,12 +46,16 @@ class Stars(NamedTuple):
     n_darts: NDArray[np.int64]  # of lines
     n_ends: NDArray[np.int64]  # boundary vertices of lines
     signature: NDArray[np.uint64]  # (n, 4)
-    run: NDArray[np.int64]  # where the run of each touched patch starts, set after set, and the total number of entries
+    block: NDArray[np.int32]  # the blocks each set touches, ascending, set after set
+    mask: NDArray[np.uint64]  # which of the 64 cells of the block
+    head: NDArray[np.int64]  # the first entry in the block
+    block_start: NDArray[np.int64]  # (n + 1,)
+    run: NDArray[np.int64]  # where the blocks of each touched patch start, set after set, and the total number of blocks
     run_start: NDArray[np.int64]  # (n + 1,)
 
 
 class Scratch(NamedTuple):
-    """Working memory: the slot of each cell, and the tick at which a part or an entry was last touched."""
+    """Working memory: the slot of each block, and the tick at which a part or an entry was last touched."""
 
     slot: NDArray[np.int32]
     mark: NDArray[np.int64]
@@ -80,10 +85,19 @@ def popcount(x):  # type: ignore[no-untyped-def]
     x = x - ((x >> np.uint64(1)) & np.uint64(0x5555555555555555))
     x = (x & np.uint64(0x3333333333333333)) + ((x >> np.uint64(2)) & np.uint64(0x3333333333333333))
     x = (x + (x >> np.uint64(4))) & np.uint64(0x0F0F0F0F0F0F0F0F)
-    x = x + (x >> np.uint64(8))
-    x = x + (x >> np.uint64(16))
-    x = x + (x >> np.uint64(32))
-    return np.int64(x & np.uint64(0x7F))
+    return np.int64((x * np.uint64(0x0101010101010101)) >> np.uint64(56))  # compilers know this form: one instruction
+
+
+@kernel(inline="always")
+def stamped_entry(t, w, x, cell):  # type: ignore[no-untyped-def]
+    """Return the entry of the stamped set x in a cell, or -1."""
+    b = np.int64(w.slot[cell >> 6])
+    if b < t.block_start[x] or b >= t.block_start[x + 1]:
+        return -1
+    bit = np.uint64(1) << np.uint64(cell & 63)
+    if not t.mask[b] & bit:
+        return -1
+    return t.head[b] + popcount(t.mask[b] & (bit - np.uint64(1)))
 
 
 @kernel(inline="always")
@@ -105,8 +119,8 @@ def are_apart(t, x, y):  # type: ignore[no-untyped-def]
 @kernel(inline="always")
 def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate region y to the stamped region x."""
-    first = t.start[x]
-    count = t.start[x + 1] - first
+    first = t.block_start[x]
+    count = t.block_start[x + 1] - first
     many_x = t.part_start[x + 1] - t.part_start[x] > 1
     many_y = t.part_start[y + 1] - t.part_start[y] > 1
     ii = ib = ie = bi = be = ei = eb = curve = NONE
@@ -115,36 +129,44 @@ def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     at = t.run_start[y]
     for k in range(0 if apart else 4):
         its = t.signature[y, k]
-        common = its & t.signature[x, k]
-        while common and not full:
-            patch = common & (~common + np.uint64(1))  # the lowest common patch
-            common ^= patch
+        patches = its & t.signature[x, k]
+        while patches and not full:
+            patch = patches & (~patches + np.uint64(1))  # the lowest common patch
+            patches ^= patch
             r = at + popcount(its & (patch - np.uint64(1)))
-            for j in range(t.run[r], t.run[r + 1]):
-                i = np.int64(w.slot[t.cell[j]])
-                if np.uint64(i - first) >= np.uint64(count):
+            for b in range(t.run[r], t.run[r + 1]):
+                a = np.int64(w.slot[t.block[b]])
+                if np.uint64(a - first) >= np.uint64(count):
                     continue
-                touched = True
-                if many_x:
-                    w.mark[t.part_start[x] + t.part[i]] = tick
-                if many_y:
-                    w.mark[t.part_start[y] + t.part[j]] = tick
-                sx = t.sectors[i]
-                sy = t.sectors[j]
-                dx = t.darts[i]
-                dy = t.darts[j]
-                curve |= dx & dy
-                ii |= sx & sy
-                ie |= sx & ~sy
-                ei |= sy & ~sx
-                ox = dx & ~dy
-                oy = dy & ~dx
-                bi |= ox & sy
-                be |= ox & ~sy
-                ib |= oy & sx
-                eb |= oy & ~sx
-                if curve and ii and ib and ie and bi and be and ei and eb:
-                    full = True  # nothing more to learn, and an untouched part could add nothing either
+                cells = t.mask[a] & t.mask[b]
+                while cells:
+                    bit = cells & (~cells + np.uint64(1))
+                    cells ^= bit
+                    i = t.head[a] + popcount(t.mask[a] & (bit - np.uint64(1)))
+                    j = t.head[b] + popcount(t.mask[b] & (bit - np.uint64(1)))
+                    touched = True
+                    if many_x:
+                        w.mark[t.part_start[x] + t.part[i]] = tick
+                    if many_y:
+                        w.mark[t.part_start[y] + t.part[j]] = tick
+                    sx = t.sectors[i]
+                    sy = t.sectors[j]
+                    dx = t.darts[i]
+                    dy = t.darts[j]
+                    curve |= dx & dy
+                    ii |= sx & sy
+                    ie |= sx & ~sy
+                    ei |= sy & ~sx
+                    ox = dx & ~dy
+                    oy = dy & ~dx
+                    bi |= ox & sy
+                    be |= ox & ~sy
+                    ib |= oy & sx
+                    eb |= oy & ~sx
+                    if curve and ii and ib and ie and bi and be and ei and eb:
+                        full = True  # nothing more to learn, and an untouched part could add nothing either
+                        break
+                if full:
                     break
         at += popcount(its)
     bits = 0
@@ -188,8 +210,8 @@ def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     b = y if line_is_x else x  # the region
     bits = EI
     for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
-        i = np.int64(w.slot[t.cell[j]])
-        if i < t.start[x] or i >= t.start[x + 1]:
+        i = stamped_entry(t, w, x, t.cell[j])
+        if i < 0:
             continue
         m = i if line_is_x else j
         k = j if line_is_x else i
@@ -230,8 +252,8 @@ def line_line(t, w, x, y, apart):  # type: ignore[no-untyped-def]
     ends_y = 0
     vertices = 0
     for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
-        i = np.int64(w.slot[t.cell[j]])
-        if i < t.start[x] or i >= t.start[x + 1]:
+        i = stamped_entry(t, w, x, t.cell[j])
+        if i < 0:
             continue
         vertices += 1
         fx = t.sectors[i]
@@ -275,25 +297,49 @@ def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def patches(cell, start, n_cells):  # type: ignore[no-untyped-def]
-    """Find the patches each set touches, its entries being sorted by cell: signature (n, 4), run, run_start (n + 1,)."""
+def blocks(cell, start, n_cells):  # type: ignore[no-untyped-def]
+    """Find the blocks and patches each set touches, its entries being sorted by cell.
+
+    Returns block, mask, head, block_start, signature, run and run_start as in `Stars`.
+    """
     n = start.size - 1
+    n_blocks = (n_cells >> 6) + 1
+    block = np.empty(cell.size, np.int32)
+    mask = np.zeros(cell.size, np.uint64)
+    head = np.empty(cell.size, np.int64)
+    block_start = np.zeros(n + 1, np.int64)
     signature = np.zeros((n, 4), np.uint64)
     run = np.empty(cell.size + 1, np.int64)
     run_start = np.zeros(n + 1, np.int64)
     end = 0
+    runs = 0
     for x in range(n):
-        last = -1
+        last_patch = -1
         for i in range(start[x], start[x + 1]):
-            patch = np.int64(cell[i]) * 256 // n_cells
-            if patch != last:
-                signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
-                run[end] = i
+            its = np.int64(cell[i] >> 6)
+            if end == block_start[x] or block[end - 1] != its:
+                patch = its * 256 // n_blocks
+                if patch != last_patch:
+                    signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
+                    run[runs] = end
+                    runs += 1
+                    last_patch = patch
+                block[end] = its
+                head[end] = i
                 end += 1
-                last = patch
-        run_start[x + 1] = end
-    run[end] = cell.size
-    return signature, run[: end + 1].copy(), run_start
+            mask[end - 1] |= np.uint64(1) << np.uint64(cell[i] & 63)
+        block_start[x + 1] = end
+        run_start[x + 1] = runs
+    run[runs] = end
+    return (
+        block[:end].copy(),
+        mask[:end].copy(),
+        head[:end].copy(),
+        block_start,
+        signature,
+        run[: runs + 1].copy(),
+        run_start,
+    )
 
 
 @kernel
@@ -318,8 +364,8 @@ def listed_pairs(t, w, order, group, ys, codes):  # type: ignore[no-untyped-def]
     for x in range(t.start.size - 1):
         if group[x] == group[x + 1]:
             continue
-        for i in range(t.start[x], t.start[x + 1]):
-            w.slot[t.cell[i]] = i
+        for b in range(t.block_start[x], t.block_start[x + 1]):
+            w.slot[t.block[b]] = b
         for at in range(group[x], group[x + 1]):
             k = order[at]
             y = ys[k]
@@ -353,8 +399,9 @@ def all_pairs(t, w, owner, begin, near, codes):  # type: ignore[no-untyped-def]
     n = t.start.size - 1
     tick = 0
     for x in range(n):
+        for b in range(t.block_start[x], t.block_start[x + 1]):
+            w.slot[t.block[b]] = b
         for i in range(t.start[x], t.start[x + 1]):
-            w.slot[t.cell[i]] = i
             for k in range(begin[t.cell[i]], begin[t.cell[i] + 1]):
                 near[owner[k]] = x
         for y in range(x, n):

@@ -140,7 +140,9 @@ class SetTable:
         """Return fresh working memory for the pair kernels."""
         entries, parts = int(self.stars.start[-1]), int(self.stars.part_start[-1])
         return _pairs.Scratch(
-            np.full(self.n_cells, -1, np.int32), np.full(parts + 1, -1, np.int64), np.full(entries + 1, -1, np.int64)
+            np.full((self.n_cells >> 6) + 1, -1, np.int32),
+            np.full(parts + 1, -1, np.int64),
+            np.full(entries + 1, -1, np.int64),
         )
 
     @classmethod
@@ -173,7 +175,7 @@ class SetTable:
         seed[part_start[points]] = number_at[cell[start[points]]]
         ends = [x.ends if isinstance(x, Region) else _NO_ENDS for x in sets]
         is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
-        signature, run, run_start = _pairs.patches.compiled(cell, start, n_cells)
+        block, mask, head, block_start, signature, run, run_start = _pairs.blocks.compiled(cell, start, n_cells)
         stars = _pairs.Stars(
             cell=cell,
             sectors=sectors,
@@ -189,6 +191,10 @@ class SetTable:
             n_darts=np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64),
             n_ends=np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0).astype(np.int64),
             signature=signature,
+            block=block,
+            mask=mask,
+            head=head,
+            block_start=block_start,
             run=run,
             run_start=run_start,
         )
