@@ -178,4 +178,4 @@ def orientation(a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) -> NDArray[np
             ax, ay, bx, by, cx, cy = (Fraction(float(t)) for point in (a[k], b[k], c[k]) for t in point)
             exact = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
             sign[k] = (exact > 0) - (exact < 0)
-    return sign
+    return np.asarray(sign, dtype=np.int64)

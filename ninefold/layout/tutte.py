@@ -4,9 +4,9 @@ The map itself is tried first, its outer cycle on a regular polygon: where the m
 convex. Other maps get scaffolding that makes a triangulated disc of them: a hub in each bounded face of more than three
 sides, and, where a face comes back to a vertex and around the whole map, a ring with one vertex for every side of the face.
 The scaffolding is simple and its rim has no chord, so the barycentric drawing is plane for any positive weights (Floater
-2003), in exact arithmetic. A few rounds that give longer edges more weight even it out, which keeps dead ends from shrinking.
-In floating point parts nested many deep can shrink below what can be told apart; the drawing is therefore checked, and the
-Schnyder drawing is given with a note where the check fails.
+2003), in exact arithmetic. A few rounds that give longer edges more weight even it out, which keeps dead ends from
+shrinking. In floating point parts nested many deep can shrink below what can be told apart; the drawing is therefore
+checked, and the Schnyder drawing is given with a note where the check fails.
 
 References
 ----------
