@@ -1,8 +1,7 @@
 """Placing vertex names on a small picture so that no two collide, and few lie on an edge.
 
-Each name tries places around its vertex, near ones first and those in the widest gap between the vertex's edges first. A
-place that meets another name, a vertex or the rim is out; crossing an edge costs. Names are set in order of how crowded
-their vertices are, the most crowded first.
+Each name tries places around its vertex. A place that meets another name, a vertex or the rim is out; crossing an edge
+costs, and so does distance. Names are set in order of how crowded their vertices are, the most crowded first.
 """
 
 from __future__ import annotations
@@ -101,7 +100,9 @@ def place_labels(
     return [found[v] for v in sorted(found)]
 
 
-def _places(at: NDArray[np.float64], wide: float, high: float, dot: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _places(
+    at: NDArray[np.float64], wide: float, high: float, dot: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centres of the places to try, upper right first, and how far each lies from the vertex."""
     angle = -np.pi / 4 + 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     unit = np.stack([np.cos(angle), np.sin(angle)], axis=1)

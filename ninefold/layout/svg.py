@@ -1,9 +1,9 @@
 """Drawings as SVG: readable in light and dark, without scripts, fonts or anything else from outside the file.
 
 Bounded faces stand on a tinted ground, so the outer face is the paper. Highlighted sets are coloured by role, in the order
-given: regions tinted, hatched and outlined, lines broad, points as rings. Names appear on small maps only; edges and vertices
-carry tool tips. A Schnyder drawing lives in a right triangle; the picture shears it to an equilateral one, which keeps
-straight lines, sides and crossings as they are.
+given: regions tinted, hatched and outlined (dashed after the first, so that a shared outline shows both), lines broad,
+points as dots. Names appear on small maps only; edges and vertices carry tool tips. A Schnyder drawing lives in a right
+triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-s
 _UNFIT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _PAD = 28.0
 _HATCH = (None, 45, -45, 0, 90, 22, -22)
+_DASH = ("none", "10 8", "3 6", "14 6", "6 6", "2 4", "12 4 3 4")
 
 
 def render(
@@ -77,10 +78,9 @@ def render(
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height:.0f}" viewBox="0 0 {width} {height:.0f}" '
-        f'role="img" aria-label="{name}" font-family="{_FONT}">\n<title>{name}</title>\n{text}\n</svg>\n'
-    )
+    size = f'width="{width}" height="{height:.0f}" viewBox="0 0 {width} {height:.0f}"'
+    root = f'xmlns="http://www.w3.org/2000/svg" class="ninefold-{theme}" {size} role="img" aria-label="{name}"'
+    return f'<svg {root} font-family="{_FONT}">\n<title>{name}</title>\n{text}\n</svg>\n'
 
 
 def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | Set | None) -> list[tuple[str, Set]]:
@@ -156,7 +156,8 @@ def _escaped(text: str) -> str:
 
 def _defs(theme: str, used: int) -> str:
     hatches = "".join(
-        f'<pattern id="h{k}" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate({_HATCH[k]})">'
+        f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
+        f'patternTransform="rotate({_HATCH[k]})">'
         f'<path class="s{k}" d="M0,3.5H7" stroke-width="1.1" stroke-opacity="0.55"/></pattern>'
         for k in range(used)
         if _HATCH[k] is not None
@@ -182,13 +183,14 @@ def _region(page: _Page, k: int, x: Region) -> list[str]:
     d = page.rings(x)
     parts = [f'<path class="f{k}" fill-opacity="0.26" fill-rule="evenodd" d="{d}"/>']
     if _HATCH[k] is not None:
-        parts.append(f'<path fill="url(#h{k})" fill-rule="evenodd" d="{d}"/>')
+        parts.append(f'<path fill="url(#ninefold-hatch-{k})" fill-rule="evenodd" d="{d}"/>')
     return parts
 
 
 def _outline(page: _Page, k: int, x: Region) -> list[str]:
     broad = float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
-    return [f'<path class="s{k}" fill="none" stroke-width="{broad:.2f}" stroke-linejoin="round" d="{page.rings(x)}"/>']
+    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"'
+    return [f'<path class="s{k}" {shape} d="{page.rings(x)}"/>']
 
 
 def _line(page: _Page, k: int, x: Line) -> list[str]:
@@ -208,9 +210,7 @@ def _edges(page: _Page) -> list[str]:
     lines = [page.path(page.drawing.path(e)) for e in real]
     if len(real) > TIPS_UP_TO:
         return [f'<path {shape} d="{"".join(lines)}"/>']
-    tips = (
-        f'<path d="{d}"><title>{_escaped(plane.edge_names[e])}</title></path>' for e, d in zip(real, lines, strict=True)
-    )
+    tips = (f'<path d="{d}"><title>{_escaped(plane.edge_names[e])}</title></path>' for e, d in zip(real, lines, strict=True))
     return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
 
 
@@ -231,8 +231,8 @@ def _point(page: _Page, k: int, x: Point) -> list[str]:
     cx, cy = page.place(page.drawing.points[[x.index]])[0].tolist()
     r = max(6.0, page.dot + 2)
     return [
-        f'<circle class="halo" fill="none" cx="{cx:.2f}" cy="{cy:.2f}" r="{r + 1.6:.2f}" stroke-width="1.8"/>'
-        f'<circle class="f{k}" cx="{cx:.2f}" cy="{cy:.2f}" r="{r:.2f}"><title>{_escaped(x.name)}</title></circle>'
+        f'<circle class="halo" fill="none" cx="{cx:.2f}" cy="{cy:.2f}" r="{r + 1.6:.2f}" stroke-width="1.8"/>',
+        f'<circle class="f{k}" cx="{cx:.2f}" cy="{cy:.2f}" r="{r:.2f}"><title>{_escaped(x.name)}</title></circle>',
     ]
 
 
@@ -254,11 +254,8 @@ def _names(page: _Page, marked: set[int]) -> list[str]:
         f'<text x="{label.x:.1f}" y="{label.y + 0.35 * size:.1f}">{_escaped(label.text)}</text>' for label in placed
     )
     parts = [f'<path class="leader" fill="none" stroke-width="0.7" d="{leaders}"/>'] if leaders else []
-    return [
-        *parts,
-        f'<g class="name" font-size="{size:g}" text-anchor="middle" stroke-width="3" stroke-linejoin="round" '
-        f'paint-order="stroke">{texts}</g>',
-    ]
+    look = 'text-anchor="middle" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
 
 
 def _legend(page: _Page, sets: list[tuple[str, Set]]) -> tuple[list[str], float]:
@@ -287,10 +284,12 @@ def _swatch(k: int, s: Set, x: float, y: float) -> str:
         case Point():
             return f'<circle class="f{k}" cx="{x + 11:.1f}" cy="{y:.1f}" r="6"/>'
         case Line():
-            return f'<path class="s{k}" stroke-width="4.2" stroke-linecap="round" d="M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"/>'
+            way = f"M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"
+            return f'<path class="s{k}" stroke-width="4.2" stroke-linecap="round" d="{way}"/>'
         case Region():
-            hatch = "" if _HATCH[k] is None else f'<rect fill="url(#h{k})" {box}/>'
-            return f'<rect class="f{k}" fill-opacity="0.26" {box}/>{hatch}<rect class="s{k}" fill="none" stroke-width="2" {box}/>'
+            hatch = "" if _HATCH[k] is None else f'<rect fill="url(#ninefold-hatch-{k})" {box}/>'
+            rim = f'<rect class="s{k}" fill="none" stroke-width="2" stroke-dasharray="{_DASH[k]}" {box}/>'
+            return f'<rect class="f{k}" fill-opacity="0.26" {box}/>{hatch}{rim}'
 
 
 def _kind(s: Set) -> str:

@@ -22,7 +22,7 @@ LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E22
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(base: dict[str, str], roles: tuple[str, ...], used: int) -> str:
+def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], used: int) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -35,13 +35,18 @@ def _rules(base: dict[str, str], roles: tuple[str, ...], used: int) -> str:
         f".leader{{stroke:{base['faint']}}}",
     ]
     for k, colour in enumerate(roles[:used]):
-        rules.append(f".f{k}{{fill:{colour}}}.s{k}{{stroke:{colour}}}")
-    return "".join(rules)
+        rules += [f".f{k}{{fill:{colour}}}", f".s{k}{{stroke:{colour}}}"]
+    return "".join(f"{scope} {rule}" for rule in rules)
 
 
 def style_sheet(theme: str, used: int) -> str:
-    """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference."""
-    light, dark = _rules(LIGHT, ROLES, used), _rules(DARK, _ROLES_ON_DARK, used)
+    """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
+
+    The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
+    the whole page.
+    """
+    scope = f".ninefold-{theme}"
+    light, dark = _rules(scope, LIGHT, ROLES, used), _rules(scope, DARK, _ROLES_ON_DARK, used)
     match theme:
         case "light":
             return light
