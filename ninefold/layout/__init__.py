@@ -1,1 +1,44 @@
-"""layout."""
+"""Pictures and proof: straight-line drawings of plane maps, their geometry, and the oracle that checks symbolic answers.
+
+**Drawing.** A map has no coordinates; a layout gives it some. `schnyder` puts the vertices on an integer grid, (n - 2) x
+(n - 2) for simple maps, in linear time and at any size; `tutte` gives a rounder picture, and says in the drawing's notes
+where it had to fall back. Both keep the rotation system, the outer face and the hosts of all components; `draw` takes the
+layout by name. Loops and parallel edges get bends (`subdivide`), edges are added inside faces until all are triangles
+(`triangulate`), and dropped afterwards.
+
+**Drawing as a value.** `Drawing` holds points and bends. It turns any point, line or region of its map into a valid shapely
+geometry (`shapes`), and shows itself as SVG (`svg`, `labels`, `theme`) or on matplotlib axes (`plot`).
+
+**The oracle.** `verify` checks a drawing from its coordinates alone (`planarity`) and holds ``relate`` against
+``shapely.relate`` on given or sampled pairs (`sampling`); `verify_geometry` does so on geometry of the caller's. What
+disagrees is shrunk to a small map that still shows it (`shrink`).
+
+shapely, scipy and matplotlib are imported at first use.
+"""
+
+from __future__ import annotations
+
+from .draw import LAYOUTS, draw
+from .drawing import Drawing
+from .oracle import Disagreement, Report, verify, verify_geometry
+from .planarity import drawing_problems
+from .sampling import random_sets, sample_pairs
+from .schnyder import schnyder
+from .shrink import shrink
+from .tutte import tutte
+
+__all__ = [
+    "LAYOUTS",
+    "Disagreement",
+    "Drawing",
+    "Report",
+    "draw",
+    "drawing_problems",
+    "random_sets",
+    "sample_pairs",
+    "schnyder",
+    "shrink",
+    "tutte",
+    "verify",
+    "verify_geometry",
+]

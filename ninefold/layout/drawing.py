@@ -1,0 +1,238 @@
+"""A drawing of a plane map: coordinates for its vertices, polylines for its edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ninefold.errors import BadInput, DifferentMaps
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ninefold.mapping import PlaneMap, Set
+
+__all__ = ["Drawing"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drawing:
+    """A straight-line drawing of a plane map; edges have bends only where they must (loops, parallel edges).
+
+    Attributes
+    ----------
+    plane
+        The map.
+    points
+        (V, 2), x to the east and y to the north: int64 for the Schnyder layout, float64 for others.
+    bends, bend_start
+        (B, 2) and (E + 1,) int64: the inner points of edge e, in order along dart 2e, are
+        ``bends[bend_start[e]:bend_start[e + 1]]``.
+    layout
+        The name of the layout that made it.
+    notes
+        What the reader of the drawing should know, such as a fall-back to another layout.
+    """
+
+    plane: PlaneMap = field(repr=False)
+    points: NDArray[Any]
+    bends: NDArray[Any]
+    bend_start: NDArray[np.int64]
+    layout: str = "given"
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def from_points(
+        cls,
+        plane: PlaneMap,
+        points: ArrayLike,
+        bends: ArrayLike | None = None,
+        bend_start: ArrayLike | None = None,
+        *,
+        layout: str = "given",
+        notes: Iterable[str] = (),
+    ) -> Drawing:
+        """Make a drawing from coordinates; shapes are checked, planarity is the business of `ninefold.layout.verify`.
+
+        Raises
+        ------
+        BadInput
+            For arrays that do not fit the map, or coordinates that are not finite.
+        """
+        xy = _coordinates("points", points)
+        if len(xy) != plane.n_vertices:
+            raise BadInput(f"{len(xy)} points for {plane.n_vertices} vertices; give one each")
+        inner = np.zeros((0, 2), xy.dtype) if bends is None else _coordinates("bends", bends)
+        start = np.zeros(plane.tether.size + 1, np.int64) if bend_start is None else np.array(bend_start, np.int64)
+        if start.shape != (plane.tether.size + 1,) or start[0] != 0 or start[-1] != len(inner) or (np.diff(start) < 0).any():
+            raise BadInput(
+                f"bend_start must rise from 0 to {len(inner)} in {plane.tether.size + 1} steps, one more than edges"
+            )
+        for array in (xy, inner, start):
+            array.setflags(write=False)
+        return cls(plane, xy, inner, start, layout, tuple(notes))
+
+    # -- coordinates ---------------------------------------------------------------------------------------------------
+
+    def path(self, edge: int) -> NDArray[Any]:
+        """Return the polyline of an edge by number, (k, 2), both ends included, along dart 2e."""
+        ends = self.points[self.plane.tail[[2 * edge, 2 * edge + 1]]]
+        inner = self.bends[self.bend_start[edge] : self.bend_start[edge + 1]]
+        return np.concatenate([ends[:1], inner, ends[1:]])
+
+    @cached_property
+    def _lines(self) -> tuple[NDArray[Any], NDArray[np.int64]]:
+        """The polylines of all edges, tethers included, as one (N, 2) array, and where each starts, (E + 1,)."""
+        count = np.diff(self.bend_start)
+        start = np.concatenate([[0], np.cumsum(count + 2)]).astype(np.int64)
+        line = np.empty((int(start[-1]), 2), np.result_type(self.points, self.bends))
+        line[start[:-1]] = self.points[self.plane.tail[0::2]]
+        line[start[1:] - 1] = self.points[self.plane.tail[1::2]]
+        bend_edge = np.repeat(np.arange(count.size), count)
+        line[np.arange(len(self.bends)) + 2 * bend_edge + 1] = self.bends
+        return line, start
+
+    @cached_property
+    def pieces(self) -> tuple[NDArray[Any], NDArray[np.int64]]:
+        """The straight pieces of all edges but tethers, (S, 4) as x0 y0 x1 y1 along dart 2e, and the edge of each, (S,)."""
+        line, start = self._lines
+        edge = np.repeat(np.arange(start.size - 1), np.diff(start))
+        keep = (edge[:-1] == edge[1:]) & ~self.plane.tether[edge[:-1]] if len(edge) else np.zeros(0, np.bool_)
+        return np.concatenate([line[:-1], line[1:]], axis=1)[keep], edge[:-1][keep]
+
+    # -- geometry ------------------------------------------------------------------------------------------------------
+
+    def geometry(self, X: Set) -> Any:
+        """Return a set of the map as a valid shapely geometry.
+
+        Parameters
+        ----------
+        X
+            A `Point` becomes a shapely Point; a `Line` a LineString (one edge) or a MultiLineString of its edges; a
+            `Region` a Polygon, or a MultiPolygon if its interior is in several parts.
+
+        Raises
+        ------
+        DifferentMaps
+            If the set belongs to another map.
+
+        Notes
+        -----
+        Complexity O(size of the set's edges); for a region whose boundary has several outer rings, O(area).
+
+        Examples
+        --------
+        >>> from ninefold.mapping import PlaneMap
+        >>> from ninefold.layout import schnyder
+        >>> square = PlaneMap.from_rotation(
+        ...     {"a": ["b", "d"], "b": ["c", "a"], "c": ["d", "b"], "d": ["a", "c"]}, outer=("b", "a"))
+        >>> schnyder(square).geometry(square.cycle(["a", "b", "c", "d"])).area
+        1.0
+        """
+        from . import shapes
+
+        self.require_mine(X)
+        return shapes.geometry(self, X)
+
+    def geometries(self, sets: Iterable[Set]) -> NDArray[Any]:
+        """Return many sets as shapely geometries, (len(sets),) of object; see `geometry`."""
+        given = list(sets)
+        shapes_of = np.empty(len(given), object)
+        for i, X in enumerate(given):
+            shapes_of[i] = self.geometry(X)
+        return shapes_of
+
+    def require_mine(self, X: Set) -> None:
+        """Raise `DifferentMaps` unless the set belongs to the drawing's map."""
+        if not (X.plane is self.plane or X.plane == self.plane):
+            raise DifferentMaps(
+                f"{X!r} is a set of {X.plane!r}, and this draws another map, {self.plane!r}; draw the set's own"
+            )
+
+    # -- pictures ------------------------------------------------------------------------------------------------------
+
+    def to_svg(
+        self,
+        *,
+        highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
+        title: str | None = None,
+        labels: bool | None = None,
+        theme: str = "auto",
+        width: int = 800,
+    ) -> str:
+        """Return the drawing as an SVG document; see `ninefold.layout.svg`.
+
+        Parameters
+        ----------
+        highlight
+            Sets to colour: a mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ...
+        title
+            Heading of the picture, also its accessible name.
+        labels
+            Vertex names; left out, they are shown on maps of up to 40 vertices.
+        theme
+            ``"auto"`` follows the reader's light or dark preference; ``"light"`` and ``"dark"`` fix it.
+        width
+            Pixels.
+
+        Raises
+        ------
+        BadInput, DifferentMaps
+            For an unknown theme, a width that is not positive, too many highlighted sets, or a set of another map.
+        """
+        from .svg import render
+
+        return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width)
+
+    def save(self, path: str | Path, **options: Any) -> None:
+        """Write the drawing as an SVG file; options as for `to_svg`.
+
+        Raises
+        ------
+        BadInput
+            If the file cannot be written.
+        """
+        from pathlib import Path
+
+        text = self.to_svg(**options)
+        try:
+            Path(path).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise BadInput(f"cannot write the drawing to {str(path)!r}: {error.strerror or error}") from None
+
+    def plot(self, *, highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None, axes: Any = None) -> Any:
+        """Draw on matplotlib axes and return them; see `ninefold.layout.plot`.
+
+        Raises
+        ------
+        MissingExtra
+            Without matplotlib, which the extra ``plot`` brings.
+        """
+        from .plot import plot
+
+        return plot(self, highlight=highlight, axes=axes)
+
+    def _repr_svg_(self) -> str:
+        return self.to_svg(width=560)
+
+    def __repr__(self) -> str:
+        parts = [self.layout, repr(self.plane)]
+        if len(self.bends):
+            parts.append(f"{len(self.bends)} bend{'' if len(self.bends) == 1 else 's'}")
+        return f"Drawing({', '.join([*parts, *self.notes])})"
+
+
+def _coordinates(name: str, values: ArrayLike) -> NDArray[Any]:
+    array = np.array(values)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iuf":
+        raise BadInput(f"{name} must be numbers of shape (count, 2), not {array.dtype} of shape {array.shape}")
+    array = array.astype(np.float64 if array.dtype.kind == "f" else np.int64)
+    if not np.isfinite(array).all():
+        raise BadInput(f"{name} must be finite")
+    return array

@@ -1,0 +1,326 @@
+"""Drawings as SVG: readable in light and dark, without scripts, fonts or anything else from outside the file.
+
+Bounded faces stand on a tinted ground, so the outer face is the paper. Highlighted sets are coloured by role, in the order
+given: regions tinted, hatched and outlined (dashed after the first, so that a shared outline shows both), lines broad,
+points as dots. Names appear on small maps only; edges and vertices carry tool tips. A Schnyder drawing lives in a right
+triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ninefold.errors import BadInput
+from ninefold.mapping import Line, Point, Region
+
+from .labels import place_labels, text_width
+from .shapes import region_rings
+from .theme import ROLES, THEMES, style_sheet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ninefold.mapping import Set
+
+    from .drawing import Drawing
+
+__all__ = ["named_sets", "render"]
+
+LABELS_UP_TO = 40
+"""Vertices up to which names are shown unless asked otherwise."""
+
+TIPS_UP_TO = 3000
+"""Edges up to which every edge is an element of its own with a tool tip; beyond, one path holds them all."""
+
+_FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif"
+_UNFIT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_PAD = 28.0
+_HATCH = (None, 45, -45, 0, 90, 22, -22)
+_DASH = ("none", "10 8", "3 6", "14 6", "6 6", "2 4", "12 4 3 4")
+
+
+def render(
+    drawing: Drawing,
+    *,
+    highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
+    title: str | None = None,
+    labels: bool | None = None,
+    theme: str = "auto",
+    width: int = 800,
+) -> str:
+    """Return the SVG text; see `Drawing.to_svg` for the parameters."""
+    if theme not in THEMES:
+        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {theme!r}")
+    if not 100 <= width <= 20_000:
+        raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
+    sets = named_sets(drawing, highlight)
+    page = _Page(drawing, width, title)
+    shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
+    body = [
+        _defs(theme, len(sets)),
+        f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
+        *_heading(title),
+        *_ground(page),
+        *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
+        *_edges(page),
+        *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
+        *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
+        *_vertices(page),
+        *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
+    ]
+    if shown:
+        body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
+    legend, height = _legend(page, sets)
+    body += legend
+    name = _escaped(title or repr(drawing.plane))
+    text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
+    size = f'width="{width}" height="{height:.0f}" viewBox="0 0 {width} {height:.0f}"'
+    root = f'xmlns="http://www.w3.org/2000/svg" class="ninefold-{theme}" {size} role="img" aria-label="{name}"'
+    return f'<svg {root} font-family="{_FONT}">\n<title>{name}</title>\n{text}\n</svg>\n'
+
+
+def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | Set | None) -> list[tuple[str, Set]]:
+    """Return the highlighted sets with the names the legend gives them, checked against the drawing's map.
+
+    Raises
+    ------
+    BadInput, DifferentMaps
+        For more sets than colours, things that are no sets, sets of another map.
+    """
+    match highlight:
+        case None:
+            return []
+        case Point() | Line() | Region():
+            pairs = [("X", highlight)]
+        case Mapping():
+            pairs = [(str(name), x) for name, x in highlight.items()]
+        case _:
+            pairs = list(zip("XYZABCDEFGHIJKLMNOPQRSTUVW", highlight, strict=False))
+    if len(pairs) > len(ROLES):
+        raise BadInput(f"a picture has {len(ROLES)} colours to tell apart, and {len(pairs)} sets were given; draw fewer")
+    for _, x in pairs:
+        if not isinstance(x, Point | Line | Region):
+            raise BadInput(f"only points, lines and regions of the map can be highlighted, not {x!r}")
+        drawing.require_mine(x)
+    return pairs
+
+
+class _Page:
+    """The frame of the picture and the way from map coordinates to pixels."""
+
+    def __init__(self, drawing: Drawing, width: int, title: str | None) -> None:
+        self.drawing = drawing
+        self.width = width
+        self.top = 54.0 if title else 0.0
+        corners = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
+        self._shear = np.array([[1.0, 0.0], [0.5, 0.75**0.5]]) if drawing.layout == "schnyder" else np.eye(2)
+        corners = corners @ self._shear
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        room = np.array([width - 2 * _PAD, 0.85 * width - 2 * _PAD])
+        extent = high - low
+        flat = extent <= 0
+        self._scale = float((room / np.where(flat, 1.0, extent))[~flat].min()) if not flat.all() else 1.0
+        used = extent * self._scale
+        self.bottom = self.top + 2 * _PAD + max(float(used[1]), 24.0)
+        self._low, self._origin = low, np.array([(width - used[0]) / 2, self.bottom - _PAD - max(0.0, (24 - used[1]) / 2)])
+        n = max(drawing.plane.n_vertices, 1)
+        self.stroke = float(np.clip(14 / n**0.4, 0.35, 1.8))
+        self.dot = float(np.clip(20 / n**0.45, 0.6, 4.5))
+
+    def place(self, xy: NDArray[Any]) -> NDArray[np.float64]:
+        """Map coordinates (k, 2) to pixels, y downwards."""
+        at = (xy.astype(np.float64) @ self._shear - self._low) * self._scale
+        return np.asarray(self._origin + at * (1.0, -1.0))
+
+    def path(self, xy: NDArray[Any], *, closed: bool = False) -> str:
+        """Path data of a polyline in map coordinates."""
+        steps = " ".join(f"{x:.2f},{y:.2f}" for x, y in self.place(xy).tolist())
+        return f"M{steps}{'Z' if closed else ''}"
+
+    def rings(self, region: Region) -> str:
+        """Path data of a region, for the even-odd rule."""
+        return "".join(self.path(ring, closed=True) for part in region_rings(self.drawing, region) for ring in part)
+
+
+def _escaped(text: str) -> str:
+    """Return text that is safe in XML content and attributes; characters XML cannot hold become U+FFFD."""
+    kept = _UNFIT.sub("\ufffd", text)
+    for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("'", "&#39;"), ("{", "&#123;")):
+        kept = kept.replace(plain, entity)
+    return kept
+
+
+def _defs(theme: str, used: int) -> str:
+    hatches = "".join(
+        f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
+        f'patternTransform="rotate({_HATCH[k]})">'
+        f'<path class="s{k}" d="M0,3.5H7" stroke-width="1.1" stroke-opacity="0.55"/></pattern>'
+        for k in range(used)
+        if _HATCH[k] is not None
+    )
+    return f"<style>{style_sheet(theme, used)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+
+
+def _heading(title: str | None) -> list[str]:
+    if not title:
+        return []
+    return [f'<text class="ink" x="{_PAD:g}" y="38" font-size="19" font-weight="600">{_escaped(title)}</text>']
+
+
+def _ground(page: _Page) -> list[str]:
+    plane = page.drawing.plane
+    bounded = [f for f in range(plane.n_faces) if f != plane.outer_face]
+    if not bounded:
+        return []
+    return [f'<path class="land" fill-rule="evenodd" d="{page.rings(plane.region(bounded))}"/>']
+
+
+def _region(page: _Page, k: int, x: Region) -> list[str]:
+    d = page.rings(x)
+    parts = [f'<path class="f{k}" fill-opacity="0.26" fill-rule="evenodd" d="{d}"/>']
+    if _HATCH[k] is not None:
+        parts.append(f'<path fill="url(#ninefold-hatch-{k})" fill-rule="evenodd" d="{d}"/>')
+    return parts
+
+
+def _outline(page: _Page, k: int, x: Region) -> list[str]:
+    broad = float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
+    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"'
+    return [f'<path class="s{k}" {shape} d="{page.rings(x)}"/>']
+
+
+def _line(page: _Page, k: int, x: Line) -> list[str]:
+    d = "".join(page.path(page.drawing.path(e)) for e in x.edges)
+    broad = max(4.2, 2.4 * page.stroke)
+    shape = f'fill="none" stroke-linecap="round" stroke-linejoin="round" d="{d}"'
+    return [
+        f'<path class="halo" stroke-width="{broad + 2.4:.2f}" {shape}/>',
+        f'<path class="s{k}" stroke-width="{broad:.2f}" {shape}/>',
+    ]
+
+
+def _edges(page: _Page) -> list[str]:
+    plane = page.drawing.plane
+    real = np.flatnonzero(~plane.tether).tolist()
+    shape = f'class="edge" fill="none" stroke-width="{page.stroke:.2f}" stroke-linecap="round" stroke-linejoin="round"'
+    lines = [page.path(page.drawing.path(e)) for e in real]
+    if len(real) > TIPS_UP_TO:
+        return [f'<path {shape} d="{"".join(lines)}"/>']
+    tips = (f'<path d="{d}"><title>{_escaped(plane.edge_names[e])}</title></path>' for e, d in zip(real, lines, strict=True))
+    return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
+
+
+def _vertices(page: _Page) -> list[str]:
+    plane = page.drawing.plane
+    at = page.place(page.drawing.points).tolist()
+    if plane.n_edges > TIPS_UP_TO:
+        return []
+    rim = min(1.2, page.dot / 3)
+    dots = (
+        f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{page.dot:.2f}"><title>{_escaped(plane.vertex_names[v])}</title></circle>'
+        for v, (x, y) in enumerate(at)
+    )
+    return [f'<g class="dot" stroke-width="{rim:.2f}">{"".join(dots)}</g>']
+
+
+def _point(page: _Page, k: int, x: Point) -> list[str]:
+    cx, cy = page.place(page.drawing.points[[x.index]])[0].tolist()
+    r = max(6.0, page.dot + 2)
+    return [
+        f'<circle class="halo" fill="none" cx="{cx:.2f}" cy="{cy:.2f}" r="{r + 1.6:.2f}" stroke-width="1.8"/>',
+        f'<circle class="f{k}" cx="{cx:.2f}" cy="{cy:.2f}" r="{r:.2f}"><title>{_escaped(x.name)}</title></circle>',
+    ]
+
+
+def _names(page: _Page, marked: set[int]) -> list[str]:
+    plane = page.drawing.plane
+    pieces, _ = page.drawing.pieces
+    drawn = np.concatenate([page.place(pieces[:, :2]), page.place(pieces[:, 2:])], axis=1)
+    size = 13.0 if plane.n_vertices <= 25 else 11.0
+    placed = place_labels(
+        [name if len(name) <= 24 else f"{name[:23]}\N{HORIZONTAL ELLIPSIS}" for name in plane.vertex_names],
+        page.place(page.drawing.points),
+        drawn,
+        size=size,
+        dot=max(page.dot, 7.0 if marked else 0.0),
+        frame=(2.0, page.top + 2.0, page.width - 2.0, page.bottom - 2.0),
+    )
+    leaders = "".join("M{:.1f},{:.1f} {:.1f},{:.1f}".format(*label.leader) for label in placed if label.leader)
+    texts = "".join(
+        f'<text x="{label.x:.1f}" y="{label.y + 0.35 * size:.1f}">{_escaped(label.text)}</text>' for label in placed
+    )
+    parts = [f'<path class="leader" fill="none" stroke-width="0.7" d="{leaders}"/>'] if leaders else []
+    look = 'text-anchor="middle" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
+
+
+def _legend(page: _Page, sets: list[tuple[str, Set]]) -> tuple[list[str], float]:
+    """The legend and the caption below the map; and the height of the whole picture."""
+    parts, x, y = [], _PAD, page.bottom + 16.0
+    for k, (name, s) in enumerate(sets):
+        text = f"{name}: {_kind(s)}"
+        wide = 30 + text_width(text, 13) + 22
+        if x > _PAD and x + wide > page.width - _PAD:
+            x, y = _PAD, y + 24
+        parts.append(_swatch(k, s, x, y))
+        parts.append(f'<text class="ink" x="{x + 30:.1f}" y="{y + 4.5:.1f}" font-size="13">{_escaped(text)}</text>')
+        x += wide
+    if sets:
+        y += 26
+    caption = [_counts(page.drawing), f"{page.drawing.layout} layout", *page.drawing.notes]
+    for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
+        parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
+        y += 16
+    return parts, y + 6
+
+
+def _swatch(k: int, s: Set, x: float, y: float) -> str:
+    box = f'x="{x:.1f}" y="{y - 7:.1f}" width="22" height="14" rx="2"'
+    match s:
+        case Point():
+            return f'<circle class="f{k}" cx="{x + 11:.1f}" cy="{y:.1f}" r="6"/>'
+        case Line():
+            way = f"M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"
+            return f'<path class="s{k}" stroke-width="4.2" stroke-linecap="round" d="{way}"/>'
+        case Region():
+            hatch = "" if _HATCH[k] is None else f'<rect fill="url(#ninefold-hatch-{k})" {box}/>'
+            rim = f'<rect class="s{k}" fill="none" stroke-width="2" stroke-dasharray="{_DASH[k]}" {box}/>'
+            return f'<rect class="f{k}" fill-opacity="0.26" {box}/>{hatch}{rim}'
+
+
+def _kind(s: Set) -> str:
+    match s:
+        case Point():
+            return f"vertex {s.name}"
+        case Line():
+            return f"line of {_count(len(s.edges), 'edge')}"
+        case Region():
+            return f"region of {_count(s.n_faces, 'face')}"
+
+
+def _count(number: int, one: str) -> str:
+    return f"{number:,} {one}{'' if number == 1 else 's'}"
+
+
+def _counts(drawing: Drawing) -> str:
+    plane = drawing.plane
+    vertices = "1 vertex" if plane.n_vertices == 1 else f"{plane.n_vertices:,} vertices"
+    parts = [vertices, _count(plane.n_edges, "edge"), _count(plane.n_faces, "face")]
+    if plane.n_components > 1:
+        parts.append(f"{plane.n_components:,} components")
+    return ", ".join(parts)
+
+
+def _wrapped(text: str, most: float) -> list[str]:
+    lines, line = [], ""
+    for word in text.split():
+        if line and len(line) + 1 + len(word) > most:
+            lines.append(line)
+            line = word
+        else:
+            line = f"{line} {word}".strip()
+    return [*lines, line]
