@@ -8,15 +8,18 @@ from numpy.typing import NDArray
 from ninefold.mapping import Heading, Line, PlaneMap, Point, Region
 from ninefold.reasoner import Relation, relate, relate_all, relate_pairs
 
-plane = PlaneMap.from_rotation({"a": ["b"], "b": ["a"]})
-assert_type(plane, PlaneMap)
-assert_type(plane.vertex("a"), Point)
-assert_type(plane.edge("a", "b"), Line)
-assert_type(plane.cycle(["a"]), Region)
-assert_type(plane.parse("vertex:a"), Point | Line | Region)
-assert_type(plane.cycle(["a"]) | plane.face(0), Region)
-assert_type(relate(plane.vertex("a"), plane.edge("0")), Relation)
-assert_type(relate(plane.vertex("a"), plane.edge("0")).rcc8, str | None)
-assert_type(relate_pairs([plane.vertex("a")], [(0, 0)]), NDArray[np.uint16])
-assert_type(relate_all([plane.vertex("a")]), NDArray[np.uint16])
-assert_type(Heading.from_bearing(90).yaw, float)
+
+def check(plane: PlaneMap) -> None:
+    """Never called."""
+    assert_type(PlaneMap.from_rotation({"a": ["b"], "b": ["a"]}), PlaneMap)
+    assert_type(plane, PlaneMap)
+    assert_type(plane.vertex("a"), Point)
+    assert_type(plane.edge("a", "b"), Line)
+    assert_type(plane.cycle(["a"]), Region)
+    assert_type(plane.parse("vertex:a"), Point | Line | Region)
+    assert_type(plane.cycle(["a"]) | plane.face(0), Region)
+    assert_type(relate(plane.vertex("a"), plane.edge("0")), Relation)
+    assert_type(relate(plane.vertex("a"), plane.edge("0")).rcc8, str | None)
+    assert_type(relate_pairs([plane.vertex("a")], [(0, 0)]), NDArray[np.uint16])
+    assert_type(relate_all([plane.vertex("a")]), NDArray[np.uint16])
+    assert_type(Heading.from_bearing(90).yaw, float)
