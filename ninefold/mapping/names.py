@@ -110,6 +110,8 @@ def _label(kind: str, label: str | int) -> str:
     if isinstance(label, bool) or not isinstance(label, str | int):
         raise BadInput(f"a {kind} name is a string, not {label!r}")
     text = str(label)
-    if not text or any(ord(c) < 32 or 0xD800 <= ord(c) < 0xE000 for c in text):
+    if any(0xD800 <= ord(c) < 0xE000 for c in text):
+        raise BadInput(f"the {kind} name {label!r} cannot be written as text: it holds half a character")
+    if not text or any(ord(c) < 32 for c in text):
         raise BadInput(f"a {kind} name is printable text, not {label!r}")
     return text

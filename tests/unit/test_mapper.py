@@ -265,7 +265,7 @@ def test_events_out_of_order():
 
 
 def test_a_place_not_recognised():
-    refused(WalkError, "a place that was not recognised; one map needs every place", "a", 0, Visit(None))
+    refused(WalkError, "a place that was not recognised .null.; one map needs every place", "a", 0, Visit(None))
     refused(WalkError, "a place that was not recognised", Visit(None))
 
 
