@@ -9,7 +9,7 @@ component lands in the face that hosts it.
 References
 ----------
 W. Schnyder, Embedding planar graphs on the grid, SODA 1990.
-H. de Fraysseix, J. Pach, R. Pollack, How to draw a planar graph on a grid, Combinatorica 10 (1990), for the ordering.
+H. de Fraysseix et al., How to draw a planar graph on a grid, Combinatorica 10 (1990), for the ordering.
 """
 
 from __future__ import annotations

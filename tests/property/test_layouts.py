@@ -10,6 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_maps import MAP_KINDS, random_map
+from scipy.spatial import Delaunay
 from worlds import KINDS, world
 
 from ninefold.layout import Drawing, draw, drawing_problems, schnyder, tutte
@@ -216,6 +217,27 @@ def test_realizer_is_three_trees_that_share_the_inner_edges(plane):
             while v != root:
                 v, steps = int(parent[v, tree]), steps + 1
                 assert steps <= n
+
+
+@pytest.mark.parametrize(("keep", "n"), [(1.0, 30_000), (0.5, 60_000)])
+def test_large_drawings_carry_their_own_proof(keep, n):
+    """If every triangle but the outer one is counter-clockwise and their areas add up to the hull's, nothing crosses."""
+    rng = np.random.default_rng(7)
+    t = Delaunay(rng.random((n, 2))).simplices
+    pairs = np.unique(np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1), axis=0)
+    points = np.random.default_rng(7).random((n, 2))
+    plane = PlaneMap.from_geometry(points, pairs[rng.random(len(pairs)) < keep])
+    xy = schnyder(plane).points
+    tail, after, _ = triangulate(plane.tail, plane.next_ccw, n)
+    walk = face_permutation(after)
+    corner = xy[tail]
+    u, v = corner[walk] - corner, corner[walk[walk]] - corner
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    outside = [plane.outer, int(walk[plane.outer]), int(walk[walk[plane.outer]])]
+    assert (area[outside] < 0).all()
+    assert (np.delete(area, outside) > 0).all()
+    assert area.sum() == 0
+    assert (xy.min(), xy.max()) == (0, n - 2)
 
 
 def meets_badly(p, q, shared):

@@ -162,10 +162,10 @@ def test_svg_themes_and_options_are_checked():
 
 
 def test_names_that_xml_cannot_hold_are_made_safe():
-    plane = PlaneMap.from_rotation({"<a>&\"'": ["b\ufffe"], "b\ufffe": ["<a>&\"'"]})
-    text = draw(plane).to_svg(title="{height}", highlight={"\x00\x1b": plane.vertex("<a>&\"'")})
+    plane = PlaneMap.from_rotation({"<a>&\"'": ["b\ufffe\uffff"], "b\ufffe\uffff": ["<a>&\"'"]})
+    text = draw(plane).to_svg(title="{height}", highlight={"\x00\ud800": plane.vertex("<a>&\"'")})
     texts = [t.text for t in ET.fromstring(text).iter("{http://www.w3.org/2000/svg}text")]
-    assert {"<a>&\"'", "b\ufffd", "{height}", "\ufffd\ufffd: vertex <a>&\"'"} <= set(texts)
+    assert {"<a>&\"'", "b\ufffd\ufffd", "{height}", "\ufffd\ufffd: vertex <a>&\"'"} <= set(texts)
 
 
 def test_the_same_drawing_gives_the_same_bytes():
