@@ -20,11 +20,23 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import samples
+    from .atlas import Atlas
+    from .formats import read_map
+    from .records import Provenance, Statement
     from .sources import Source, read_source
+    from .walks import read_walk
 
-__all__ = ["Source", "read_source", "samples"]
+__all__ = ["Atlas", "Provenance", "Source", "Statement", "read_map", "read_source", "read_walk", "samples"]
 
-_HOME = {"Source": "sources", "read_source": "sources"}
+_HOME = {
+    "Atlas": "atlas",
+    "Provenance": "records",
+    "Source": "sources",
+    "Statement": "records",
+    "read_map": "formats",
+    "read_source": "sources",
+    "read_walk": "walks",
+}
 
 
 def __getattr__(name: str) -> Any:

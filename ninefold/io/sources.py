@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ninefold.mapping import PlaneMap
+    from ninefold.mapping.simulated import SimulatedWorld
 
 __all__ = ["Crossing", "Source", "read_source"]
 
@@ -149,13 +150,31 @@ class Source:
         """
         from ninefold.mapping import PlaneMap
 
-        if self.crossings:
-            raise BadInput(
-                f"{self._crossing_sentence()}; drop edges (--drop-crossing, Source.without_crossings) or add the vertices"
-            )
+        self._refuse_crossings()
         return PlaneMap.from_geometry(
             self.points, self.edges, self.paths, vertex_names=self.vertex_names, edge_names=self.edge_names
         )
+
+    def to_world(self) -> SimulatedWorld:
+        """Make the world that a simulated robot explores; see `ninefold.mapping.simulated`.
+
+        Raises
+        ------
+        BadInput
+            If edges meet without a vertex.
+        """
+        from ninefold.mapping.simulated import SimulatedWorld
+
+        self._refuse_crossings()
+        return SimulatedWorld(
+            self.points, self.edges, self.paths, vertex_names=self.vertex_names, edge_names=self.edge_names
+        )
+
+    def _refuse_crossings(self) -> None:
+        if self.crossings:
+            raise BadInput(
+                f"{self._crossing_sentence()}; add vertices, or drop edges with --drop-crossing (Source.without_crossings)"
+            )
 
     def without_crossings(self) -> Source:
         """Drop edges until none meets another without a vertex, those with the most crossings first.

@@ -1,0 +1,186 @@
+"""The atlas file: its tables, its marks, and how a connection to it is made.
+
+An atlas is an SQLite database in write-ahead mode. ``PRAGMA application_id`` is `APPLICATION_ID` and ``PRAGMA user_version``
+the format version. Any SQLite tool can read it; the view ``dart`` shows the map in the library's own terms.
+"""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from ninefold.errors import AtlasError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = ["APPLICATION_ID", "VERSION", "check_file", "connect", "create_tables", "one_line", "reporting", "transaction"]
+
+APPLICATION_ID = 0x4E39464C
+"""The four letters N9FL at byte 68 of the file."""
+
+VERSION = 1
+BUSY_SECONDS = 5.0
+
+TABLES = """
+-- Single values. origin: 'walk' or 'map'. header: the walk's header line as JSON. map_events: how many events the stored map
+-- stands for (it may lag behind the log; it is never ahead). outer: a dart with the outer face on its left, -1 for no edge.
+-- vertices, edges: row counts of the stored map. headings: 1 if it has headings and turns, else 0. warnings: JSON list of
+-- sentences, as of the stored map.
+CREATE TABLE meta (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+-- The walk, one event a row, in the form of a line of a walk file with headings in yaw radians.
+CREATE TABLE event (seq INTEGER PRIMARY KEY, json TEXT NOT NULL);
+-- The map. Ids count from 0; a name that is NULL is the id. Edge e has the darts 2e (from tail to head) and 2e + 1 (back).
+CREATE TABLE vertex (id INTEGER PRIMARY KEY, name TEXT);
+-- next_out, next_back: the next dart counter-clockwise after dart 2e around tail, after 2e + 1 around head. heading_out and
+-- heading_back: yaw in radians on leaving along the dart; turn: net rotation along 2e; NULL where unknown. tether: 1 for a
+-- virtual edge that ties a separate component to its host face.
+CREATE TABLE edge (
+  id INTEGER PRIMARY KEY, name TEXT, tail INTEGER NOT NULL, head INTEGER NOT NULL,
+  next_out INTEGER NOT NULL, next_back INTEGER NOT NULL,
+  heading_out REAL, heading_back REAL, turn REAL, tether INTEGER NOT NULL
+);
+CREATE VIEW dart AS
+  SELECT 2 * id AS dart, tail, head, next_out AS next_ccw, heading_out AS heading FROM edge
+  UNION ALL SELECT 2 * id + 1, head, tail, next_back, heading_back FROM edge;
+-- Named sets. kind: point, line or region. definition: JSON in vertex and edge names, never face numbers: {"vertex": name},
+-- {"edges": [...]} with "start" for a path, or {"boundary": [...]}, the edges around a region. text: as it was given.
+CREATE TABLE named_set (name TEXT PRIMARY KEY, kind TEXT NOT NULL, definition TEXT NOT NULL, text TEXT NOT NULL);
+-- Declared relations: relations split by spaces. weight NULL counts as 1, infinity is hard.
+CREATE TABLE statement (
+  id INTEGER PRIMARY KEY, a TEXT NOT NULL, relations TEXT NOT NULL, b TEXT NOT NULL, label TEXT, weight REAL
+);
+-- Where the content comes from: the file, its SHA-256, what made it of it, when (UTC, ISO 8601).
+CREATE TABLE provenance (
+  id INTEGER PRIMARY KEY, source TEXT NOT NULL, kind TEXT NOT NULL, sha256 TEXT, tool TEXT NOT NULL, made TEXT NOT NULL
+);
+"""
+
+_MAGIC = b"SQLite format 3\0"
+
+
+def check_file(path: Path) -> None:
+    """Say why a file is no atlas, from its first bytes, before SQLite sees it.
+
+    Raises
+    ------
+    AtlasError
+        For a missing, empty, foreign, newer or truncated file.
+    """
+    try:
+        with path.open("rb") as file:
+            head = file.read(100)
+            size = os.fstat(file.fileno()).st_size
+    except FileNotFoundError:
+        raise AtlasError(f"{path}: no such file; `ninefold map SOURCE -o {path.name}` makes an atlas") from None
+    except OSError as error:
+        raise AtlasError(f"{path}: cannot be read ({error.strerror or error})") from None
+    if len(head) < 100 or not head.startswith(_MAGIC):
+        raise AtlasError(f"{path}: not an atlas ({'the file is empty' if not head else 'not an SQLite database'})")
+    number = int.from_bytes(head[68:72], "big")
+    version = int.from_bytes(head[60:64], "big")
+    if number != APPLICATION_ID:
+        raise AtlasError(f"{path}: an SQLite database, but not an atlas of ninefold")
+    if version > VERSION:
+        raise AtlasError(f"{path}: written in atlas format {version}; this ninefold reads up to {VERSION}, so update it")
+    if version < 1:
+        raise AtlasError(f"{path}: damaged (atlas format {version} does not exist)")
+    page = int.from_bytes(head[16:18], "big")
+    expected = int.from_bytes(head[28:32], "big") * (65536 if page == 1 else page)
+    # Between a kill and the next opening, pages may still be in the write-ahead log alone.
+    if size < expected and not _has_log(path):
+        raise AtlasError(f"{path}: truncated ({size:,} of {expected:,} bytes); restore it from a copy or from the walk")
+
+
+def _has_log(path: Path) -> bool:
+    log = path.with_name(path.name + "-wal")
+    try:
+        return log.stat().st_size > 0
+    except OSError:
+        return False
+
+
+def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
+    """Open a connection to an atlas that `check_file` has passed; transactions are explicit."""
+    location = f"file:{quote(str(path.absolute()))}"
+    with reporting(path):
+        if writable:
+            connection = sqlite3.connect(f"{location}?mode=rw", uri=True, isolation_level=None, timeout=BUSY_SECONDS)
+            connection.execute("PRAGMA synchronous = FULL")  # an event that was appended survives a power cut too
+        else:
+            # Reading a database in write-ahead mode needs a lock file beside it, which a read-only folder does not allow.
+            # Without a log there is nothing to lock for: nobody can be writing there.
+            frozen = "" if _has_log(path) or os.access(path.parent, os.W_OK) else "&immutable=1"
+            connection = sqlite3.connect(f"{location}?mode=ro{frozen}", uri=True, isolation_level=None, timeout=BUSY_SECONDS)
+        try:
+            connection.execute("SELECT count(*) FROM meta").fetchone()
+        except BaseException:
+            connection.close()
+            raise
+    return connection
+
+
+def create_tables(path: Path) -> sqlite3.Connection:
+    """Make a new atlas file and return a connection that writes fast and without safety, for a file nobody knows yet."""
+    with reporting(path):
+        connection = sqlite3.connect(path, isolation_level=None)
+        try:
+            connection.execute("PRAGMA journal_mode = OFF")
+            connection.execute("PRAGMA synchronous = OFF")
+            connection.executescript(TABLES)
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            connection.execute(f"PRAGMA user_version = {VERSION}")
+        except BaseException:
+            connection.close()
+            raise
+    return connection
+
+
+@contextmanager
+def transaction(connection: sqlite3.Connection) -> Iterator[None]:
+    """Run one write transaction; whatever fails, the file is as it was."""
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+        connection.execute("COMMIT")
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
+
+
+@contextmanager
+def reporting(path: Path) -> Iterator[None]:
+    """Turn what SQLite raises into one clear line."""
+    try:
+        yield
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes what is damaged, byte by byte
+        raise AtlasError(f"{path}: {_reason(error)}") from None
+
+
+def _reason(error: sqlite3.Error | UnicodeDecodeError) -> str:
+    code = getattr(error, "sqlite_errorcode", None)
+    primary = code & 0xFF if isinstance(code, int) else None
+    if primary in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        return f"another program has been writing to it for {BUSY_SECONDS:.0f} s; try again when it is done"
+    if primary == sqlite3.SQLITE_FULL:
+        return "the disk is full; nothing was changed"
+    if primary == sqlite3.SQLITE_IOERR:
+        return "the disk cannot be read or written (full, or failing); nothing was changed"
+    if primary in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM):
+        return "the file or its folder is read-only; nothing was changed"
+    if primary == sqlite3.SQLITE_CANTOPEN:
+        return "cannot be opened (missing, or the folder is read-only)"
+    if primary in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
+        return "damaged or truncated; restore it from a copy or from the walk"
+    return f"damaged, or no atlas of ninefold (SQLite says: {one_line(error)})"
+
+
+def one_line(words: object) -> str:
+    """Return a message fit for one line, however odd the stored text that it quotes."""
+    text = " ".join("".join(c if c.isprintable() else " " for c in str(words)).split())
+    return text if len(text) <= 300 else text[:297] + "..."
