@@ -105,18 +105,26 @@ def _has_log(path: Path) -> bool:
 
 
 def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
-    """Open a connection to an atlas that `check_file` has passed; transactions are explicit."""
-    location = f"file:{quote(str(path.absolute()))}"
+    """Open a connection to an atlas that `check_file` has passed; transactions are explicit.
+
+    A reader too opens the file for writing where it may, and is then forbidden to change it: in write-ahead mode even
+    reading takes a lock file, which a connection opened for reading alone leaves behind.
+    """
+    may_write = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
+    if writable or may_write:
+        mode = "mode=rw"
+    elif _has_log(path):
+        mode = "mode=ro"
+    else:  # a read-only folder without a log: nobody can be writing there, so no lock is needed
+        mode = "mode=ro&immutable=1"
     with reporting(path):
-        if writable:
-            connection = sqlite3.connect(f"{location}?mode=rw", uri=True, isolation_level=None, timeout=BUSY_SECONDS)
-            connection.execute("PRAGMA synchronous = FULL")  # an event that was appended survives a power cut too
-        else:
-            # Reading a database in write-ahead mode needs a lock file beside it, which a read-only folder does not allow.
-            # Without a log there is nothing to lock for: nobody can be writing there.
-            frozen = "" if _has_log(path) or os.access(path.parent, os.W_OK) else "&immutable=1"
-            connection = sqlite3.connect(f"{location}?mode=ro{frozen}", uri=True, isolation_level=None, timeout=BUSY_SECONDS)
+        location = f"file:{quote(str(path.absolute()))}?{mode}"
+        connection = sqlite3.connect(location, uri=True, isolation_level=None, timeout=BUSY_SECONDS)
         try:
+            if writable:
+                connection.execute("PRAGMA synchronous = FULL")  # an event that was appended survives a power cut too
+            else:
+                connection.execute("PRAGMA query_only = ON")
             connection.execute("SELECT count(*) FROM meta").fetchone()
         except BaseException:
             connection.close()

@@ -2,7 +2,7 @@
 
 The walk is an event log: every event is a transaction of its own and on disk when `Atlas.append` returns, so a crash loses
 at most the event in flight. The map is stored beside the log as a snapshot; where the log has gone ahead, the map is built
-again from it. The tables are described in ``docs/reference/atlas.md``.
+again from it. The tables are described in ``docs/reference/atlas-schema.md``.
 """
 
 from __future__ import annotations
@@ -23,12 +23,13 @@ from ._atlas_file import AtlasFile, put, text_that_can_be_written
 from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences
 from ._map_rows import store_map
-from ._publish import published
+from ._set_lists import set_of_list
+from .files import published
 from .records import Provenance, Statement
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from os import PathLike
 
     from ninefold.mapping import PlaneMap, Set
@@ -284,6 +285,12 @@ class Atlas:
         return tuple(name for (name,) in self._file.rows("SELECT name FROM named_set ORDER BY name"))
 
     @property
+    def kinds(self) -> dict[str, str]:
+        """The names of the stored sets, sorted, each with ``"point"``, ``"line"`` or ``"region"``."""
+        rows = self._file.rows("SELECT name, kind FROM named_set ORDER BY name")
+        return {str(name): str(kind) for name, kind in rows}
+
+    @property
     def sets(self) -> dict[str, Set]:
         """The named sets on the map so far, sorted by name."""
         plane = self.plane
@@ -293,6 +300,8 @@ class Atlas:
     def parse(self, text: str) -> Set:
         """Return the set that a text means: a stored name, or a form such as ``cycle:a,b,c`` (see `PlaneMap.parse`).
 
+        Where names have commas, write a JSON list: ``["cycle", "a, north", "b", "c"]``.
+
         Raises
         ------
         UnknownName, BadInput
@@ -301,6 +310,8 @@ class Atlas:
         row = self._file.rows("SELECT kind, definition FROM named_set WHERE name = ?", text)
         if row:
             return self._set(self.plane, *row[0])
+        if text.lstrip().startswith("["):
+            return set_of_list(self.plane, text)
         if ":" not in text:
             raise UnknownName("set", text, self.names)
         return self.plane.parse(text)
@@ -322,29 +333,34 @@ class Atlas:
         BadInput, DifferentMaps, UnknownName
             For a name that is taken or cannot be one, a set of another map, a text that is no set.
         """
+        return self.name_all({name: item}, force=force)[name]
+
+    def name_all(self, items: Mapping[str, Set | str], *, force: bool = False) -> dict[str, Set]:
+        """Store several sets, each under its name, in one transaction: all or, after any error, none. See `name`."""
+        found = {name: self._set_to_store(name, item) for name, item in items.items()}
+        with self._file.changing() as connection:
+            for name, (item, text) in found.items():
+                if not force and connection.execute("SELECT 1 FROM named_set WHERE name = ?", (name,)).fetchone():
+                    raise _name_taken(name)
+                row = (name, KINDS[type(item)], definition_of(item), text)
+                connection.execute("INSERT OR REPLACE INTO named_set VALUES (?, ?, ?, ?)", row)
+        return {name: item for name, (item, _) in found.items()}
+
+    def _set_to_store(self, name: str, item: Set | str) -> tuple[Set, str]:
         _check_name(name)
         if isinstance(item, str):
-            found, text = self.parse(item), item
-        else:
-            if not isinstance(item, Point | Line | Region):
-                raise BadInput(f"a set is a point, line or region of the map, or its text, not {item!r}")
-            same_map(item, Point(self.plane, 0))
-            found, text = item, item.text
-        row = (name, KINDS[type(found)], definition_of(found), text)
-        with self._file.changing() as connection:
-            if not force and connection.execute("SELECT 1 FROM named_set WHERE name = ?", (name,)).fetchone():
-                raise BadInput(
-                    f"{name!r} is the name of a set already; choose another, or replace it with --force (force=True)"
-                )
-            connection.execute("INSERT OR REPLACE INTO named_set VALUES (?, ?, ?, ?)", row)
-        return found
+            return self.parse(item), item
+        if not isinstance(item, Point | Line | Region):
+            raise BadInput(f"a set is a point, line or region of the map, or its text, not {item!r}")
+        same_map(item, Point(self.plane, 0))
+        return item, item.text
 
     def rename(self, old: str, new: str) -> None:
         """Give a stored set another name, which must be free."""
         _check_name(new)
         with self._file.changing() as connection:
             if connection.execute("SELECT 1 FROM named_set WHERE name = ?", (new,)).fetchone():
-                raise BadInput(f"{new!r} is the name of a set already; choose another")
+                raise _name_taken(new)
             if connection.execute("UPDATE named_set SET name = ? WHERE name = ?", (new, old)).rowcount == 0:
                 raise UnknownName("set", old, self.names)
 
@@ -391,6 +407,10 @@ def _put_provenance(connection: sqlite3.Connection, record: Provenance | None) -
 def _check_name(name: str) -> None:
     if not isinstance(name, str) or not name.strip() or not name.isprintable() or ":" in name:
         raise BadInput(f"{name!r} cannot name a set: a name is printable text without a colon")
+
+
+def _name_taken(name: str) -> BadInput:
+    return BadInput(f"{name!r} is the name of a set already; choose another, or --force (force=True) to replace it")
 
 
 def _discard_log_of(path: Path) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["published"]
+__all__ = ["published", "refuse_existing"]
 
 
 @contextmanager
@@ -31,14 +31,7 @@ def published(path: Path, *, force: bool) -> Iterator[Path]:
         If the target exists, or the folder does not or cannot be written. Then, and after any error in the block, nothing is
         changed and no temporary file is left.
     """
-    if path.is_dir():
-        raise BadInput(f"{path}: a folder; give a file name")
-    if path.exists() and not force:
-        raise _exists(path)
-    if not path.parent.is_dir():
-        raise BadInput(f"{path}: the folder {path.parent} does not exist")
-    if not os.access(path.parent, os.W_OK):
-        raise BadInput(f"{path}: the folder {path.parent} is read-only")
+    refuse_existing(path, force=force)
     temporary = path.with_name(f".{path.name}.{uuid4().hex[:12]}.tmp")
     try:
         yield temporary
@@ -55,6 +48,24 @@ def published(path: Path, *, force: bool) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def refuse_existing(path: Path, *, force: bool) -> None:
+    """Say at once why a file cannot be written, before the work for it is done.
+
+    Raises
+    ------
+    BadInput
+        If the target exists (unless `force`) or is a folder, or its folder does not exist or is read-only.
+    """
+    if path.is_dir():
+        raise BadInput(f"{path}: a folder; give a file name")
+    if path.exists() and not force:
+        raise _exists(path)
+    if not path.parent.is_dir():
+        raise BadInput(f"{path}: the folder {path.parent} does not exist")
+    if not os.access(path.parent, os.W_OK):
+        raise BadInput(f"{path}: the folder {path.parent} is read-only")
 
 
 def _move_to_free_name(temporary: Path, path: Path) -> None:
