@@ -1,0 +1,99 @@
+"""The true shapes of a map's sets, from the source that the map was made from.
+
+The map knows no coordinate; a `Source` does, and the two share vertex and edge names. So every set of the map has a shape on
+the ground, which its relations can be held against.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ninefold.errors import UnknownName
+from ninefold.mapping import Line, Point, Region
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ninefold.mapping import PlaneMap, Set
+
+    from .sources import Source
+
+__all__ = ["TrueShapes"]
+
+
+class TrueShapes:
+    """Shapely geometry of sets, found by the names of their vertices and edges.
+
+    Parameters
+    ----------
+    source
+        With the names that the maps use.
+
+    Examples
+    --------
+    >>> from ninefold.io import samples
+    >>> from ninefold.io.truth import TrueShapes
+    >>> source = samples.load("office")
+    >>> TrueShapes(source).of(source.to_map().cycle(["lobby", "hall", "archive", "desk"])).area
+    100.0
+    """
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self._vertex = {name: row for row, name in enumerate(source.vertex_names)}
+        self._edge = {name: row for row, name in enumerate(source.edge_names)}
+
+    def of(self, item: Set) -> Any:
+        """Return the shape of a set.
+
+        A region is what the true polylines of its boundary edges enclose an odd number of times; its faces are not asked.
+
+        Raises
+        ------
+        UnknownName
+            For a vertex or edge that the source does not have.
+        """
+        import shapely
+
+        match item:
+            case Point():
+                return shapely.Point(self.source.points[self._row("vertex", item.name)])
+            case Line():
+                # Trails, not edges: GEOS overlooks boundary points of lines in pieces (see ninefold.mapping.trails).
+                return shapely.MultiLineString([self._along(item.plane, trail) for trail in item.trails])
+            case Region():
+                return _enclosed([self.source.geometry[self._row("edge", name)] for name in item.boundary.edge_names])
+
+    def _along(self, plane: PlaneMap, darts: tuple[int, ...]) -> NDArray[np.float64]:
+        pieces: list[NDArray[np.float64]] = []
+        for d in darts:
+            edge = self._row("edge", plane.edge_names[d >> 1])
+            start = self._row("vertex", plane.vertex_names[int(plane.tail[d])])
+            path = self.source.polyline(edge)
+            pieces.append(path if int(self.source.edges[edge, 0]) == start else path[::-1])
+        return np.concatenate([pieces[0][:1], *[piece[1:] for piece in pieces]])
+
+    def _row(self, kind: str, name: str) -> int:
+        rows = self._vertex if kind == "vertex" else self._edge
+        if name not in rows:
+            raise UnknownName(kind, name, rows)
+        return rows[name]
+
+
+def _enclosed(lines: list[Any]) -> Any:
+    """Return what lines enclose an odd number of times. Coordinates stay as they are: nothing is overlaid."""
+    import shapely
+
+    cells = shapely.get_parts(shapely.polygonize(lines))
+    coordinates, owner = shapely.get_coordinates(lines, return_index=True)
+    joined = owner[1:] == owner[:-1]
+    (x0, y0), (x1, y1) = coordinates[:-1][joined].T, coordinates[1:][joined].T
+    inside = []
+    for cell, (x, y) in zip(cells, shapely.get_coordinates(shapely.point_on_surface(cells)), strict=True):
+        upward = (y0 > y) != (y1 > y)  # pieces that a ray to the east may meet
+        at = x0[upward] + (y - y0[upward]) * (x1[upward] - x0[upward]) / (y1[upward] - y0[upward])
+        if np.count_nonzero(at > x) % 2:
+            inside.append(cell)
+    return shapely.MultiPolygon(inside)  # two cells inside share no edge, for it would be no boundary
