@@ -1,0 +1,202 @@
+"""``ninefold map``, ``info`` and ``name``: making an atlas, looking at it, naming sets in it."""
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
+from ._output import notes, print_json, progress
+
+if TYPE_CHECKING:
+    from ninefold.io import Atlas
+    from ninefold.mapping import PlaneMap
+
+__all__ = ["info", "map_source", "name"]
+
+
+def map_source(
+    source: SourceText,
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="ATLAS", help="The atlas to write.", show_default=False)],
+    tolerance: Annotated[
+        float | None, typer.Option(help="For a walk, instead of its header's: radians within which headings are one.")
+    ] = None,
+    drop_crossing: DropCrossing = False,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> int:
+    """Build the atlas of a walk log or of a source with geometry, whose coordinates are dropped."""
+    from ninefold.errors import BadInput
+    from ninefold.io.files import refuse_existing
+    from ninefold.io.formats import format_of
+
+    kind = format_of(source)
+    if kind == "atlas":
+        raise BadInput(f"{source}: an atlas already; `ninefold info` shows what is in it")
+    if kind == "walk" and drop_crossing:
+        raise BadInput("--drop-crossing is for sources with geometry, and a walk has none")
+    if kind == "source" and tolerance is not None:
+        raise BadInput("--tolerance is for walks; geometry needs none")
+    refuse_existing(out, force=force)
+    with progress(f"mapping {source}"):
+        atlas = (
+            _from_walk(source, out, tolerance, force=force)
+            if kind == "walk"
+            else _from_source(source, out, drop_crossing=drop_crossing, force=force)
+        )
+    with atlas:
+        plane, warnings = atlas.plane, atlas.warnings
+    if as_json:
+        print_json({"file": str(out), **_counts(plane), "warnings": list(warnings)})
+    else:
+        notes(warnings)
+        print(f"{out}: {_described(plane)}")
+    return 0
+
+
+def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> "Atlas":
+    from ninefold.io import Atlas, Provenance, read_walk
+
+    return Atlas.from_walk(
+        read_walk(source, tolerance=tolerance), out, provenance=Provenance.of_file(source, "walk"), force=force
+    )
+
+
+def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":
+    from ninefold.io import Atlas, Provenance, samples
+    from ninefold.io.sources import read_source
+
+    found = read_source(source)
+    if drop_crossing:
+        found = found.without_crossings()
+    name = source.removeprefix("sample:")
+    origin = Provenance.of_file(source if name == source else samples.path(name), "geojson")
+    return Atlas.from_map(found.to_map(), out, provenance=origin, warnings=found.notes, force=force)
+
+
+def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
+    """Show counts, outer face, checks, named sets and provenance of an atlas."""
+    from ninefold.io import Atlas
+
+    with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
+        plane = found.plane
+        plane.validate()
+        facts: dict[str, Any] = {
+            "file": str(atlas),
+            **_counts(plane),
+            "outer_face": plane.outer_face,
+            "outer_edges": _outer_edges(plane),
+            "dead_ends": int((plane.degree == 1).sum()),
+            "origin": found.origin,
+            "events": found.n_events,
+            "checks": _checks(plane),
+            "names": found.kinds,
+            "statements": len(found.statements),
+            "provenance": [
+                {"source": p.source, "kind": p.kind, "sha256": p.sha256, "tool": p.tool, "made": p.made}
+                for p in found.provenance
+            ],
+            "warnings": list(found.warnings),
+        }
+    if as_json:
+        print_json(facts)
+    else:
+        _show(facts, plane)
+    return 0
+
+
+def name(
+    atlas: AtlasPath,
+    set_name: Annotated[str, typer.Argument(metavar="NAME", help="Any text without a colon.", show_default=False)],
+    set_text: Annotated[
+        str,
+        typer.Argument(
+            metavar="SET",
+            help="vertex:v3, edge:v1,v3, edge:@e7, path:v1,v2,@e9,v3, line:@e1,@e2, cycle:v0,v1,v8,v7, face:12, "
+            'faces:3,4,9, a stored name, or a JSON list such as ["cycle", "a, north", "b", "c"].',
+            show_default=False,
+        ),
+    ],
+    *,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> int:
+    """Store a set under a name."""
+    from ninefold.io import Atlas
+
+    with progress(f"reading {atlas}"), Atlas.open(atlas) as found:
+        item = found.name(set_name, set_text, force=force)
+    if as_json:
+        print_json({"name": set_name, "set": set_text, "kind": type(item).__name__.lower(), "dimension": item.dimension})
+    else:
+        print(f"{set_name}: {item!r}")
+    return 0
+
+
+def _counts(plane: "PlaneMap") -> dict[str, int]:
+    return {
+        "vertices": plane.n_vertices,
+        "edges": plane.n_edges,
+        "faces": plane.n_faces,
+        "components": plane.n_components,
+    }
+
+
+def _described(plane: "PlaneMap") -> str:
+    return repr(plane).removeprefix("PlaneMap(").removesuffix(")")
+
+
+def _outer_edges(plane: "PlaneMap") -> list[str]:
+    """Return the edges along the outer face, in order of the walk, each once."""
+    edges = dict.fromkeys(d >> 1 for d in plane.face_darts(plane.outer_face) if not plane.tether[d >> 1])
+    return [plane.edge_names[e] for e in edges]
+
+
+def _checks(plane: "PlaneMap") -> dict[str, Any]:
+    """Return what `PlaneMap.validate` has just confirmed, and how well headings and turns agree."""
+    checks: dict[str, Any] = {"euler": True, "turning": None, "largest_residual": None, "worst_edge": None}
+    if plane.heading is not None and plane.turn is not None and plane.n_edges:
+        import numpy as np
+
+        from ninefold.mapping.turning import edge_residual
+
+        residual = np.where(plane.tether, 0.0, np.abs(edge_residual(plane.heading, plane.turn)))
+        worst = int(np.nanargmax(residual))
+        checks |= {"turning": True, "largest_residual": float(residual[worst]), "worst_edge": plane.edge_names[worst]}
+    return checks
+
+
+def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
+    outer = facts["outer_edges"]
+    print(f"{facts['file']}: {_described(plane)}")
+    print(
+        f"outer face   {facts['outer_face']}, along {len(outer)} edges{': ' + ', '.join(outer[:6]) if outer else ''}"
+        f"{', ...' if len(outer) > 6 else ''}"
+    )
+    print(f"dead ends    {facts['dead_ends']}")
+    checks = facts["checks"]
+    turning = (
+        "no headings"
+        if checks["turning"] is None
+        else (
+            f"every face turns once; headings and turns agree within {checks['largest_residual']:.2g} rad "
+            f"(worst: {checks['worst_edge']})"
+        )
+    )
+    print(f"checks       V - E + F is right; {turning}")
+    events = f", {facts['events']:,} events" if facts["origin"] == "walk" else ""
+    print(f"made from    a {facts['origin']}{events}")
+    for record in facts["provenance"]:
+        print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
+    named = facts["names"]
+    kinds = ", ".join(
+        f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in sorted(Counter(named.values()).items())
+    )
+    shown = ", ".join(list(named)[:8]) + (", ..." if len(named) > 8 else "")
+    print(f"named sets   {kinds}: {shown}" if named else "named sets   none")
+    if facts["statements"]:
+        print(f"statements   {facts['statements']}")
+    for warning in facts["warnings"]:
+        print(f"note         {warning}")
