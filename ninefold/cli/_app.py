@@ -4,7 +4,7 @@ import typer
 
 from ninefold import __version__
 
-from . import atlas, demo, explore, relate
+from . import atlas, demo, explore, pictures, relate
 
 __all__ = ["app"]
 
@@ -16,6 +16,8 @@ _COMMANDS = (
     (atlas.info, "info", "Show what an atlas holds."),
     (atlas.name, "name", "Store a named set."),
     (relate.relate, "relate", "One relation, or a table of all."),
+    (pictures.draw, "draw", "Draw the map."),
+    (pictures.verify, "verify", "Hold symbolic answers against geometry."),
 )
 
 # Plain help text: loading rich would cost more than everything else that `--help` does.

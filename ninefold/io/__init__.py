@@ -22,20 +22,38 @@ if TYPE_CHECKING:
     from . import samples
     from .atlas import Atlas
     from .formats import read_map
+    from .networks import read_network, write_network
     from .records import Provenance, Statement
     from .sources import Source, read_source
-    from .walks import read_walk
+    from .walks import iter_events, read_walk, write_walk
 
-__all__ = ["Atlas", "Provenance", "Source", "Statement", "read_map", "read_source", "read_walk", "samples"]
+__all__ = [
+    "Atlas",
+    "Provenance",
+    "Source",
+    "Statement",
+    "iter_events",
+    "read_map",
+    "read_network",
+    "read_source",
+    "read_walk",
+    "samples",
+    "write_network",
+    "write_walk",
+]
 
 _HOME = {
     "Atlas": "atlas",
     "Provenance": "records",
     "Source": "sources",
     "Statement": "records",
+    "iter_events": "walks",
     "read_map": "formats",
+    "read_network": "networks",
     "read_source": "sources",
     "read_walk": "walks",
+    "write_network": "networks",
+    "write_walk": "walks",
 }
 
 
