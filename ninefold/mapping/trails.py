@@ -21,7 +21,7 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
 
     Notes
     -----
-    Hierholzer's algorithm, O(edges).
+    Hierholzer's algorithm; O(edges) but for finding where to splice, at worst the product of edges and closed walks left over.
 
     Examples
     --------
@@ -51,19 +51,31 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
             v = int(tail[d ^ 1])
 
     walks = [advance(v) for v in at if v in line.boundary and any(d >> 1 not in used for d in at[v])]
-    through = {int(tail[d]): i for i, walk in enumerate(walks) for d in (*walk, walk[-1] ^ 1)}
+    owner: dict[int, int] = {}  # vertex -> a walk through it
+    waiting: list[int] = []
+
+    def register(darts: list[int], walk: int) -> None:
+        for d in darts:
+            for v in (int(tail[d]), int(tail[d ^ 1])):
+                owner.setdefault(v, walk)
+                waiting.append(v)
+
+    def absorb() -> None:
+        """Splice in every closed walk left over at a vertex that a walk passes already."""
+        while waiting:
+            v = waiting.pop()
+            while round_trip := advance(v):
+                walk = walks[owner[v]]
+                cut = next((k for k, d in enumerate(walk) if int(tail[d]) == v), len(walk))
+                walk[cut:cut] = round_trip
+                register(round_trip, owner[v])
+
+    for i, walk in enumerate(walks):
+        register(walk, i)
+    absorb()
     for v in at:
-        while round_trip := advance(v):
-            # A closed walk left over: spliced into a walk that passes one of its vertices, else a trail of its own.
-            place = next((k for k, d in enumerate(round_trip) if int(tail[d]) in through), None)
-            if place is None:
-                i = len(walks)
-                walks.append(round_trip)
-            else:
-                loop = round_trip[place:] + round_trip[:place]
-                start = int(tail[loop[0]])
-                i = through[start]
-                cut = next((k for k, d in enumerate(walks[i]) if int(tail[d]) == start), len(walks[i]))
-                walks[i][cut:cut] = loop
-            through.update((int(tail[d]), i) for d in round_trip)
+        if round_trip := advance(v):  # a piece without odd vertices
+            walks.append(round_trip)
+            register(round_trip, len(walks) - 1)
+            absorb()
     return tuple(map(tuple, walks))

@@ -1,7 +1,7 @@
 import itertools
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from worlds import KINDS, random_sets, world
 
@@ -10,6 +10,7 @@ from ninefold.mapping import Line
 
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.integers(1, 30))
+@example(197820, "whole", 25)  # a closed walk that joins two others
 def test_trails_cover_every_edge_once_and_end_at_the_boundary(seed, kind, size):
     plane = world(seed, kind, size).plane
     for line in random_sets(np.random.default_rng(seed), plane, 10):
