@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from numbers import Integral
 
 from ninefold.errors import BadInput, UnknownName
 
@@ -60,21 +61,22 @@ class Names(Sequence[str]):
         UnknownName
             With near labels, if there is no such label.
         """
-        text = str(label)
+        text = _text(label)
+        found = self._find(text)
+        if found is None:
+            raise UnknownName(self.kind, text, self if self.size <= 20_000 else ())
+        return found
+
+    def _find(self, text: str) -> int | None:
         if self._rows is not None:
-            found = self._rows.get(text)
-            if found is not None:
-                return found
-        elif text.isascii() and text.isdecimal() and str(int(text)) == text and int(text) < self.size:
-            return int(text)
-        raise UnknownName(self.kind, text, self if self.size <= 20_000 else ())
+            return self._rows.get(text)
+        if len(text) <= len(str(self.size)) and text.isascii() and text.isdecimal():
+            row = int(text)
+            return row if row < self.size and str(row) == text else None
+        return None
 
     def __contains__(self, label: object) -> bool:
-        try:
-            self.row(label)  # type: ignore[arg-type]
-        except UnknownName:
-            return False
-        return True
+        return self._find(_text(label)) is not None
 
     def __getitem__(self, row: int) -> str:  # type: ignore[override]
         if self._labels is not None:
@@ -99,7 +101,7 @@ class Names(Sequence[str]):
         return tuple(self) == tuple(other)
 
     def __hash__(self) -> int:
-        return hash((self.kind, self.size))
+        return hash(self.size)
 
     def __repr__(self) -> str:
         shown = ", ".join(list(self)[:4]) if self.size <= 4 else f"{self[0]}, {self[1]}, ... {self[self.size - 1]}"
@@ -107,11 +109,18 @@ class Names(Sequence[str]):
 
 
 def _label(kind: str, label: str | int) -> str:
-    if isinstance(label, bool) or not isinstance(label, str | int):
+    if isinstance(label, bool) or not isinstance(label, str | Integral):
         raise BadInput(f"a {kind} name is a string, not {label!r}")
-    text = str(label)
+    text = _text(label)
     if any(0xD800 <= ord(c) < 0xE000 for c in text):
         raise BadInput(f"the {kind} name {label!r} cannot be written as text: it holds half a character")
     if not text or any(ord(c) < 32 for c in text):
         raise BadInput(f"a {kind} name is printable text, not {label!r}")
     return text
+
+
+def _text(label: object) -> str:
+    try:
+        return str(label)
+    except ValueError:  # Python refuses to write out integers of thousands of digits
+        return f"{label:#x}"

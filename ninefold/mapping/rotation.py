@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,7 +108,7 @@ def from_rotation(
 
 
 def _entry(entry: Any) -> Entry:
-    if isinstance(entry, str | int) and not isinstance(entry, bool):
+    if isinstance(entry, str | Integral) and not isinstance(entry, bool):
         return str(entry), None
     if isinstance(entry, tuple | list) and len(entry) == 2:
         return str(entry[0]), str(entry[1])
@@ -135,9 +136,11 @@ def _edge_names(labels: list[str | None]) -> list[str] | None:
 def _outer_dart(
     outer: Sequence[str | int] | int | None, row: dict[str, int], tail: list[int], edge_names: list[str] | None
 ) -> int | None:
-    if outer is None or isinstance(outer, int):
-        return outer
-    if isinstance(outer, str) or len(outer) not in (2, 3):
+    if outer is None:
+        return None
+    if isinstance(outer, Integral) and not isinstance(outer, bool):
+        return int(outer)
+    if not isinstance(outer, tuple | list) or len(outer) not in (2, 3):
         raise BadInput(f"outer is a dart, (from, to) or (from, to, edge name), not {outer!r}")
     u, v = (str(name) for name in outer[:2])
     for name in (u, v):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ninefold.errors import AmbiguousDart, BadInput, NotPlane, UnknownName
-from ninefold.mapping import Heading, PlaneMap, bridges, cut_vertices, shortest_path
+from ninefold.mapping import Heading, Names, PlaneMap, bridges, cut_vertices, shortest_path
 
 SQUARE = {"a": ["b", "d"], "b": ["c", "a"], "c": ["d", "b"], "d": ["a", "c"]}
 
@@ -221,3 +221,27 @@ def test_with_the_root_on_the_path_python_still_starts(request):
     """ADR 1: a root-level `encodings` would shadow the interpreter's own."""
     root = request.config.rootpath
     subprocess.run([sys.executable, "-c", "import ninefold.encodings"], check=True, cwd=root, env={"PYTHONPATH": str(root)})
+
+
+def test_numpy_integers_are_labels():
+    points, edges = [(0, 0), (1, 0)], [(0, 1)]
+    plane = PlaneMap.from_geometry(points, edges, vertex_names=np.arange(5, 7), edge_names=np.array([8]))
+    assert plane.edge(np.int64(5), np.int32(6)) == plane.edge(8)
+    one, two = np.array([1, 2])
+    assert PlaneMap.from_rotation({one: [two], two: [one]}, outer=np.int64(0)).edge(1, 2).edges == (0,)
+    with pytest.raises(BadInput, match="outer is a dart"):
+        PlaneMap.from_rotation({1: [2], 2: [1]}, outer=True)
+
+
+def test_labels_too_long_to_be_rows_are_unknown():
+    plane = PlaneMap.from_geometry([(0, 0), (1, 0)], [(0, 1)])
+    for label in ("9" * 5000, 10**5000):
+        with pytest.raises(UnknownName):
+            plane.vertex(label)
+        assert label not in plane.vertex_names
+
+
+def test_equal_names_have_equal_hashes():
+    vertices, edges = Names("vertex", 2), Names("edge", 2, ["0", "1"])
+    assert vertices == edges
+    assert hash(vertices) == hash(edges)
