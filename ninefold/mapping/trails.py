@@ -50,32 +50,20 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
             walk.append(d)
             v = int(tail[d ^ 1])
 
+    def completed(walk: list[int]) -> tuple[int, ...]:
+        """Splice in, at each vertex the walk passes, the closed walk that is still left there."""
+        done: list[int] = []
+        ahead = walk[::-1]
+        v = int(tail[walk[0]])
+        while True:
+            ahead += advance(v)[::-1]
+            if not ahead:
+                return tuple(done)
+            done.append(ahead.pop())
+            v = int(tail[done[-1] ^ 1])
+
     walks = [advance(v) for v in at if v in line.boundary and any(d >> 1 not in used for d in at[v])]
-    owner: dict[int, int] = {}  # vertex -> a walk through it
-    waiting: list[int] = []
-
-    def register(darts: list[int], walk: int) -> None:
-        for d in darts:
-            for v in (int(tail[d]), int(tail[d ^ 1])):
-                owner.setdefault(v, walk)
-                waiting.append(v)
-
-    def absorb() -> None:
-        """Splice in every closed walk left over at a vertex that a walk passes already."""
-        while waiting:
-            v = waiting.pop()
-            while round_trip := advance(v):
-                walk = walks[owner[v]]
-                cut = next((k for k, d in enumerate(walk) if int(tail[d]) == v), len(walk))
-                walk[cut:cut] = round_trip
-                register(round_trip, owner[v])
-
-    for i, walk in enumerate(walks):
-        register(walk, i)
-    absorb()
-    for v in at:
-        if round_trip := advance(v):  # a piece without odd vertices
-            walks.append(round_trip)
-            register(round_trip, len(walks) - 1)
-            absorb()
-    return tuple(map(tuple, walks))
+    result = [completed(walk) for walk in walks]
+    # What is left are pieces without odd vertices.
+    result.extend(completed(round_trip) for v in at if (round_trip := advance(v)))
+    return tuple(result)

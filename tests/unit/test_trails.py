@@ -11,6 +11,7 @@ from ninefold.mapping import Line
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.integers(1, 30))
 @example(197820, "whole", 25)  # a closed walk that joins two others
+@example(2479651, "dense", 13)  # a loop that links an open trail to another loop
 def test_trails_cover_every_edge_once_and_end_at_the_boundary(seed, kind, size):
     plane = world(seed, kind, size).plane
     for line in random_sets(np.random.default_rng(seed), plane, 10):
