@@ -245,3 +245,25 @@ def test_equal_names_have_equal_hashes():
     vertices, edges = Names("vertex", 2), Names("edge", 2, ["0", "1"])
     assert vertices == edges
     assert hash(vertices) == hash(edges)
+
+
+def test_shortest_offending_part_far_from_the_first_vertex():
+    """Two crossing diagonals in the far corner of a grid: found at once, and not by way of the first vertex."""
+    side = 60
+    at = np.arange(side * side).reshape(side, side)
+    rows, columns = np.stack([at[:, :-1], at[:, 1:]], axis=-1), np.stack([at[:-1], at[1:]], axis=-1)
+    diagonals = [(at[-2, -2], at[-1, -1]), (at[-2, -1], at[-1, -2])]
+    edges = np.concatenate([rows.reshape(-1, 2), columns.reshape(-1, 2), diagonals])
+    with pytest.raises(NotPlane, match=r"genus 1.* a shortest") as caught:
+        PlaneMap.from_geometry(np.argwhere(at >= 0), edges)
+    assert len(caught.value.edges) == 5
+    assert {str(len(edges) - 2), str(len(edges) - 1)} < set(caught.value.edges)
+
+
+def test_a_long_way_to_the_offending_part_is_left_out():
+    way = {str(k): [(str(j), f"w{min(j, k)}") for j in (k - 1, k + 1) if j >= 0] for k in range(3000)}
+    theta = [("end", k) for k in "xyz"]
+    rotation = way | {"3000": [("2999", "w2999"), *theta], "end": [("3000", k) for k in "xyz"]}
+    with pytest.raises(NotPlane) as caught:
+        PlaneMap.from_rotation(rotation)
+    assert caught.value.edges == ("x", "y", "z")
