@@ -62,6 +62,8 @@ class ContainmentIndex:
         preorder, low, high = walk(next_face, face_of, in_tree, outer, n_faces)
         face_at = np.empty(n_faces, np.int32)
         face_at[preorder] = np.arange(n_faces, dtype=np.int32)
+        for array in (preorder, face_at, low, high):
+            array.setflags(write=False)
         return cls(preorder, face_at, low, high)
 
     def inside(self, edges: NDArray[np.int64]) -> NDArray[np.int32]:

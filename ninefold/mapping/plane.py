@@ -167,7 +167,8 @@ class PlaneMap:
             components = _components_without(tail, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
-        for array in (tail, next_ccw, tether, heading, turn):
+        found = (derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
+        for array in (tail, next_ccw, tether, heading, turn, *found):
             if array is not None:
                 array.setflags(write=False)
         return cls(tail, next_ccw, outer_dart, tether, heading, turn, vertex_names, edge_names, derived)
@@ -262,13 +263,13 @@ class PlaneMap:
     @cached_property
     def spokes(self) -> NDArray[np.int32]:
         """(V,) int32, darts at each vertex, those of tethers included: the length of its rotation."""
-        return np.bincount(self.tail, minlength=self.n_vertices).astype(np.int32)
+        return _counts(self.tail, self.n_vertices)
 
     @cached_property
     def degree(self) -> NDArray[np.int32]:
         """(V,) int32, degree of each vertex; a loop counts twice, a tether not at all."""
         real = self.tail[~np.repeat(self.tether, 2)]
-        return np.bincount(real, minlength=self.n_vertices).astype(np.int32)
+        return _counts(real, self.n_vertices)
 
     @cached_property
     def containment(self) -> ContainmentIndex:
@@ -420,6 +421,12 @@ class PlaneMap:
         if self.n_components > 1:
             parts.append(f"{self.n_components} components")
         return f"PlaneMap({', '.join(parts)})"
+
+
+def _counts(tails: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
+    counts = np.bincount(tails, minlength=n_vertices).astype(np.int32)
+    counts.setflags(write=False)
+    return counts
 
 
 def _count(number: int, one: str, many: str) -> str:

@@ -48,6 +48,9 @@ class Point:
 
     dimension = 0
 
+    def __hash__(self) -> int:
+        return hash(self.index)  # not of the map, whose hash reads every dart
+
     @property
     def name(self) -> str:
         """The vertex's name."""

@@ -267,3 +267,12 @@ def test_a_long_way_to_the_offending_part_is_left_out():
     with pytest.raises(NotPlane) as caught:
         PlaneMap.from_rotation(rotation)
     assert caught.value.edges == ("x", "y", "z")
+
+
+def test_what_a_map_derives_is_read_only_too():
+    plane = PlaneMap.from_rotation(SQUARE, outer=("b", "a"))
+    index = plane.containment
+    arrays = [plane.face_of, plane.next_face, plane.rank, plane.first_dart, plane.spokes, plane.degree]
+    for array in [*arrays, index.preorder, index.face_at, index.low, index.high]:
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
