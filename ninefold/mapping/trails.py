@@ -21,7 +21,7 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
 
     Notes
     -----
-    Hierholzer's algorithm; O(edges) but for finding where to splice closed walks that are left over.
+    Hierholzer's algorithm, O(edges).
 
     Examples
     --------
