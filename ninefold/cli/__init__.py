@@ -70,16 +70,14 @@ def run(arguments: Sequence[str]) -> int:
     except MemoryError:
         return _failed("not enough memory for this input", wants_json=wants_json)
     except Exception as error:
+        if type(error).__name__ == "Abort":  # how some versions of the option parser pass on Ctrl-C
+            return INTERRUPTED
         return _failed(_explained(error), wants_json=wants_json)
     return code if isinstance(code, int) else 0
 
 
 def _explained(error: Exception) -> str:
     """Return the line for what is not ours: usage errors of the option parser, the system's errors, and our own mistakes."""
-    import typer
-
-    if isinstance(error, typer.Abort):
-        raise SystemExit(INTERRUPTED)
     describe = getattr(error, "format_message", None)
     if callable(describe):
         context = getattr(error, "ctx", None)

@@ -42,6 +42,7 @@ def demo(
                 "sets": report.sets,
                 "pairs": report.pairs,
                 "agree": report.agree,
+                "problems": list(report.problems),
                 "mismatches": [[m.x, m.y, m.map, m.ground] for m in report.mismatches],
                 "relations": report.names,
                 "seconds": {**{step: round(took, 3) for step, took in report.seconds.items()}, "all": round(seconds, 3)},

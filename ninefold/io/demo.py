@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold.errors import BadInput
+from ninefold.layout import draw, drawing_problems
 from ninefold.mapping import Line, Point, Region, shortest_path
 from ninefold.mapping.simulated import explore
 from ninefold.reasoner import relate
@@ -70,6 +71,8 @@ class DemoReport:
         Pairs compared.
     mismatches
         Those that differ.
+    problems
+        What of the map's rotation, faces and outer face differs from the ground's, in words.
     names
         How often each relation occurred.
     seconds
@@ -86,14 +89,15 @@ class DemoReport:
     sets: dict[str, int]
     pairs: int
     mismatches: tuple[Mismatch, ...]
+    problems: tuple[str, ...]
     names: dict[str, int]
     seconds: dict[str, float]
     files: dict[str, Path]
 
     @property
     def agree(self) -> bool:
-        """Whether every pair agrees."""
-        return not self.mismatches
+        """Whether the map lies on the ground as it should, and every pair agrees."""
+        return not self.mismatches and not self.problems
 
 
 def run_demo(
@@ -127,8 +131,10 @@ def run_demo(
     """
     folder = Path(out)
     _make_folder(folder)
-    files = {name: folder / name for name in ("district.walk.jsonl", "district.atlas", "relations.csv")}
-    walk_file, atlas_file, table_file = files.values()
+    files = {
+        name: folder / name for name in ("district.walk.jsonl", "district.atlas", "relations.csv", "map.svg", "streets.svg")
+    }
+    walk_file, atlas_file, table_file, map_file, streets_file = files.values()
     seconds: dict[str, float] = {}
     streets = samples.load(source)
 
@@ -160,15 +166,24 @@ def run_demo(
         codes = np.array([relate(sets[i], sets[j]).code for i, j in chosen.tolist()], np.uint16)
         write_relations(table_file, names, chosen, codes, force=True)
     say(f"Related {len(chosen):,} pairs of points, lines and regions without geometry.")
+    shapes = TrueShapes(streets)
     with _timed(seconds, "compare"):
-        mismatches, found = _compared(sets, names, chosen, codes, TrueShapes(streets))
+        ground = shapes.drawing(plane)
+        problems = drawing_problems(ground)
+        mismatches, found = _compared(sets, names, chosen, codes, shapes)
+    for problem in problems:
+        say(f"The map differs from the ground: {problem}.")
+    if not problems:
+        say("Laid on the true streets, which it never saw, the map has the right rotation, faces and outer face.")
     if mismatches:
         say(f"shapely on the true streets disagrees on {len(mismatches):,} pairs.")
     else:
-        say(
-            "shapely on the true streets, which the map never saw, gives the same nine-intersection for all "
-            f"{len(chosen):,} pairs."
-        )
+        say(f"shapely on the true streets gives the same nine-intersection for all {len(chosen):,} pairs.")
+    with _timed(seconds, "draw"):
+        shown = _shown(named)
+        draw(plane, layout="tutte").save(map_file, highlight=shown, title=f"{source}, as the robot knows it: no coordinates")
+        ground.save(streets_file, highlight=shown, title=f"{source}, on the ground")
+    say("Drew three of the sets on the map, which has a layout of its own, and on the ground.")
     return DemoReport(
         source=source,
         events=len(robot.walk.events),
@@ -178,6 +193,7 @@ def run_demo(
         sets=dict(kinds),
         pairs=len(chosen),
         mismatches=mismatches,
+        problems=problems,
         names=found,
         seconds=seconds,
         files=files,
@@ -221,6 +237,17 @@ def _named_sets(plane: PlaneMap, rng: np.random.Generator) -> dict[str, Set]:
             chosen = _grown(int(rng.choice(bounded)), size, neighbours, rng)
         named[f"group {k + 1}"] = plane.region(chosen)
     return named
+
+
+def _shown(named: dict[str, Set]) -> dict[str, Set]:
+    """Return the largest group of blocks in one piece, the longest street and the longest path, to be coloured."""
+    lines = {name: item for name, item in named.items() if isinstance(item, Line)}
+    groups = {name: item.n_faces for name, item in named.items() if isinstance(item, Region) and len(item.rims) == 1}
+    longest = [
+        max((name for name in lines if name.startswith(kind)), key=lambda name: len(lines[name].edges), default=None)
+        for kind in ("street ", "path ")
+    ]
+    return {name: named[name] for name in (max(groups, key=groups.__getitem__, default=None), *longest) if name is not None}
 
 
 def _streets(plane: PlaneMap) -> dict[str, list[str]]:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ninefold.errors import UnknownName
-from ninefold.mapping import Line, Point, Region
+from ninefold.mapping import Line, Point, Region, wrap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ninefold.layout import Drawing
     from ninefold.mapping import PlaneMap, Set
 
     from .sources import Source
@@ -67,13 +68,38 @@ class TrueShapes:
                 return _enclosed([self.source.geometry[self._row("edge", name)] for name in item.boundary.edge_names])
 
     def _along(self, plane: PlaneMap, darts: tuple[int, ...]) -> NDArray[np.float64]:
-        pieces: list[NDArray[np.float64]] = []
-        for d in darts:
-            edge = self._row("edge", plane.edge_names[d >> 1])
-            start = self._row("vertex", plane.vertex_names[int(plane.tail[d])])
-            path = self.source.polyline(edge)
-            pieces.append(path if int(self.source.edges[edge, 0]) == start else path[::-1])
+        pieces = [self._path(plane, d) for d in darts]
         return np.concatenate([pieces[0][:1], *[piece[1:] for piece in pieces]])
+
+    def _path(self, plane: PlaneMap, dart: int) -> NDArray[np.float64]:
+        """Return the polyline along a dart of the map, which may have been walked against the source's sense."""
+        edge = self._row("edge", plane.edge_names[dart >> 1])
+        u, v = self.source.edges[edge].tolist()
+        path = self.source.polyline(edge)
+        if u != v:
+            return path if u == self._row("vertex", plane.vertex_names[int(plane.tail[dart])]) else path[::-1]
+        if plane.heading is None:
+            return path
+        # A loop: the sense in which it leaves as the map says.
+        step, back = path[1] - path[0], path[-2] - path[-1]
+        miss = [abs(wrap(float(np.arctan2(y, x)) - float(plane.heading[dart]))) for x, y in (step, back)]
+        return path if miss[0] <= miss[1] else path[::-1]
+
+    def drawing(self, plane: PlaneMap) -> Drawing:
+        """Return the map drawn where it lies: `ninefold.layout.drawing_problems` then checks its rotation and faces.
+
+        Raises
+        ------
+        UnknownName
+            For a vertex or edge that the source does not have.
+        """
+        from ninefold.layout import Drawing
+
+        points = self.source.points[[self._row("vertex", name) for name in plane.vertex_names]]
+        none = np.zeros((0, 2))
+        inner = [none if plane.tether[e] else self._path(plane, 2 * e)[1:-1] for e in range(plane.tether.size)]
+        start = np.concatenate([[0], np.cumsum([len(bends) for bends in inner])])
+        return Drawing.from_points(plane, points, np.concatenate([none, *inner]), start, layout="ground")
 
     def _row(self, kind: str, name: str) -> int:
         rows = self._vertex if kind == "vertex" else self._edge

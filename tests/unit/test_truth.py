@@ -10,6 +10,7 @@ from ninefold.errors import BadInput, UnknownName
 from ninefold.io import samples
 from ninefold.io.relations import write_relations
 from ninefold.io.truth import TrueShapes
+from ninefold.layout import Drawing, drawing_problems
 from ninefold.mapping import build
 from ninefold.mapping.simulated import explore
 from ninefold.reasoner import de9im_strings, relate_all
@@ -58,6 +59,16 @@ def test_a_line_runs_along_the_bends_of_its_edges():
     assert shape.length == pytest.approx(source.geometry[[2, 4]][0].length + source.geometry[4].length)
     assert shape.intersects(shapely.Point(12, 2.5))
     assert not shape.intersects(shapely.Point(12, 0))
+
+
+@pytest.mark.parametrize("name", samples.names())
+def test_a_map_lies_on_the_ground_as_its_rotation_and_faces_say(name):
+    source = samples.load(name)
+    plane = build(explore(source.to_world(), seed=9).walk)
+    ground = TrueShapes(source).drawing(plane)
+    assert drawing_problems(ground) == ()
+    mirrored = Drawing.from_points(plane, ground.points * (-1, 1), ground.bends * (-1, 1), ground.bend_start)
+    assert drawing_problems(mirrored) != ()
 
 
 def test_a_set_of_another_place_is_refused():
