@@ -43,6 +43,8 @@ def demo(
                 "pairs": report.pairs,
                 "agree": report.agree,
                 "problems": list(report.problems),
+                "pairs_on_drawing": report.drawn,
+                "wrong_on_drawing": report.drawn_wrong,
                 "mismatches": [[m.x, m.y, m.map, m.ground] for m in report.mismatches],
                 "relations": report.names,
                 "seconds": {**{step: round(took, 3) for step, took in report.seconds.items()}, "all": round(seconds, 3)},

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold.errors import BadInput
-from ninefold.layout import draw, drawing_problems
+from ninefold.layout import draw, drawing_problems, side_by_side, verify
 from ninefold.mapping import Line, Point, Region, shortest_path
 from ninefold.mapping.simulated import explore
 from ninefold.reasoner import relate
@@ -41,6 +41,11 @@ __all__ = ["DemoReport", "Mismatch", "run_demo"]
 _GROUPS = 60
 _PATHS = 60
 _PAIRS = 20_000
+_ON_DRAWING = 2_000
+_FILES = (
+    *("district.walk.jsonl", "district.atlas", "relations.csv"),
+    *("map.svg", "map-schnyder.svg", "streets.svg", "figure8.svg"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +76,8 @@ class DemoReport:
         Pairs compared.
     mismatches
         Those that differ.
+    drawn, drawn_wrong
+        Pairs compared on the map's own drawing, and how many of them differ.
     problems
         What of the map's rotation, faces and outer face differs from the ground's, in words.
     names
@@ -89,6 +96,8 @@ class DemoReport:
     sets: dict[str, int]
     pairs: int
     mismatches: tuple[Mismatch, ...]
+    drawn: int
+    drawn_wrong: int
     problems: tuple[str, ...]
     names: dict[str, int]
     seconds: dict[str, float]
@@ -97,7 +106,7 @@ class DemoReport:
     @property
     def agree(self) -> bool:
         """Whether the map lies on the ground as it should, and every pair agrees."""
-        return not self.mismatches and not self.problems
+        return not self.mismatches and not self.problems and not self.drawn_wrong
 
 
 def run_demo(
@@ -131,10 +140,8 @@ def run_demo(
     """
     folder = Path(out)
     _make_folder(folder)
-    files = {
-        name: folder / name for name in ("district.walk.jsonl", "district.atlas", "relations.csv", "map.svg", "streets.svg")
-    }
-    walk_file, atlas_file, table_file, map_file, streets_file = files.values()
+    files = {name: folder / name for name in _FILES}
+    walk_file, atlas_file, table_file, map_file, grid_file, streets_file, figure_file = files.values()
     seconds: dict[str, float] = {}
     streets = samples.load(source)
 
@@ -179,11 +186,21 @@ def run_demo(
         say(f"shapely on the true streets disagrees on {len(mismatches):,} pairs.")
     else:
         say(f"shapely on the true streets gives the same nine-intersection for all {len(chosen):,} pairs.")
+    with _timed(seconds, "verify"):
+        report = verify(plane, [(sets[i], sets[j]) for i, j in chosen[:: max(1, len(chosen) // _ON_DRAWING)].tolist()])
+        problems += report.problems
+    say(
+        f"On a drawing of the map's own, checked to be plane, shapely {'gives the same' if report.agree else 'disagrees'} "
+        f"for {report.pairs:,} pairs{'' if report.agree else f', wrong in {report.wrong:,}'}."
+    )
     with _timed(seconds, "draw"):
         shown = _shown(named)
-        draw(plane, layout="tutte").save(map_file, highlight=shown, title=f"{source}, as the robot knows it: no coordinates")
+        known = f"{source}, as the robot knows it: no coordinates"
+        draw(plane, layout="tutte").save(map_file, highlight=shown, title=known)
+        draw(plane, layout="schnyder").save(grid_file, highlight=shown, title=known)
         ground.save(streets_file, highlight=shown, title=f"{source}, on the ground")
-    say("Drew three of the sets on the map, which has a layout of its own, and on the ground.")
+        figure_file.write_text(_figure_eight(), encoding="utf-8")
+    say("Drew three of the sets on the map, in both layouts, and on the ground; and figure 8 beside its Schnyder drawing.")
     return DemoReport(
         source=source,
         events=len(robot.walk.events),
@@ -193,11 +210,25 @@ def run_demo(
         sets=dict(kinds),
         pairs=len(chosen),
         mismatches=mismatches,
+        drawn=report.pairs,
+        drawn_wrong=report.wrong,
         problems=problems,
         names=found,
         seconds=seconds,
         files=files,
     )
+
+
+def _figure_eight() -> str:
+    """Return the published method's figure 8 as it stands on the ground, beside its Schnyder drawing."""
+    figure = samples.load("figure8")
+    plane = figure.to_map()
+    shown = {
+        "outer cycle": plane.cycle(["v0", "v1", "v8", "v7"]),
+        "inner cycle": plane.cycle(["v2", "v3", "v6", "v5", "v4"]),
+    }
+    drawings = {"figure 8": TrueShapes(figure).drawing(plane), "its Schnyder drawing": draw(plane, layout="schnyder")}
+    return side_by_side(*(d.to_svg(highlight=shown, title=title, width=560) for title, d in drawings.items()))
 
 
 def _make_folder(folder: Path) -> None:

@@ -24,6 +24,7 @@ from .oracle import Disagreement, Report, verify, verify_geometry
 from .planarity import drawing_problems
 from .sampling import random_sets, sample_pairs
 from .schnyder import schnyder
+from .sheet import side_by_side
 from .shrink import shrink
 from .tutte import tutte
 
@@ -38,6 +39,7 @@ __all__ = [
     "sample_pairs",
     "schnyder",
     "shrink",
+    "side_by_side",
     "tutte",
     "verify",
     "verify_geometry",
