@@ -79,7 +79,8 @@ def from_geometry(
     xy, ends = _points(points), _edges(edges)
     n_vertices, n_edges = len(xy), len(ends)
     if n_edges and (int(ends.min()) < 0 or int(ends.max()) >= n_vertices):
-        raise BadInput(f"edges must hold rows of points, 0 to {n_vertices - 1}; found {int(ends.max())}")
+        wrong = int(ends.min()) if int(ends.min()) < 0 else int(ends.max())
+        raise BadInput(f"edges must hold rows of points, 0 to {n_vertices - 1}; found {wrong}")
     v_names = Names("vertex", n_vertices, vertex_names)
     e_names = Names("edge", n_edges, edge_names)
     heading, turn, line, start = _bearings(xy, ends, paths, e_names)
@@ -102,7 +103,7 @@ def from_geometry(
 def _points(points: ArrayLike) -> NDArray[np.float64]:
     try:
         xy = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise BadInput("points must be a (V, 2) array of numbers") from None
     if xy.ndim != 2 or xy.shape[1] != 2 or not len(xy):
         raise BadInput(f"points must have shape (V, 2) with V at least 1, not {xy.shape}")
@@ -112,7 +113,10 @@ def _points(points: ArrayLike) -> NDArray[np.float64]:
 
 
 def _edges(edges: ArrayLike) -> NDArray[np.int64]:
-    array = np.asarray(edges)
+    try:
+        array = np.asarray(edges)
+    except ValueError:
+        raise BadInput("edges must be integers of shape (E, 2), and the rows given differ in length") from None
     if array.size == 0:
         return np.zeros((0, 2), np.int64)
     if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
@@ -180,7 +184,7 @@ def _polyline(
     else:
         try:
             line = np.asarray(path, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise BadInput(f"the path of edge {names[e]!r} must be a (k, 2) array of numbers") from None
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise BadInput(f"the path of edge {names[e]!r} must be finite points of shape (k, 2), k at least 2")

@@ -53,14 +53,14 @@ def unwrap(samples: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64
     Raises
     ------
     BadInput
-        If two successive samples differ by half a turn: the way between them is unknown.
+        If a sample is not finite, or two successive samples differ by half a turn: the way between them is unknown.
 
     Examples
     --------
     >>> float(round(np.diff(unwrap([3.0, -3.0]))[0], 4))
     0.2832
     """
-    yaw = np.asarray(samples, dtype=np.float64)
+    yaw = _finite(samples)
     steps = np.diff(yaw)
     steps -= TAU * np.round(steps / TAU)
     if steps.size and float(np.abs(steps).max()) > math.pi - 1e-9:
@@ -77,7 +77,7 @@ def circular_mean(samples: Sequence[float] | NDArray[np.float64]) -> float:
     Raises
     ------
     BadInput
-        For no sample, or samples that cancel out.
+        For no sample, samples that cancel out, or one that is not finite.
 
     Examples
     --------
@@ -85,11 +85,18 @@ def circular_mean(samples: Sequence[float] | NDArray[np.float64]) -> float:
     >>> round(abs(circular_mean([pi - 0.1, -pi + 0.1])), 6) == round(pi, 6)
     True
     """
-    yaw = np.asarray(samples, dtype=np.float64)
+    yaw = _finite(samples)
     east, north = float(np.cos(yaw).sum()), float(np.sin(yaw).sum())
     if math.hypot(east, north) < 1e-12 * max(1, yaw.size):
         raise BadInput("the mean of headings that cancel out, or of none, is no direction")
     return wrap(math.atan2(north, east))
+
+
+def _finite(samples: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    yaw = np.asarray(samples, dtype=np.float64)
+    if not np.isfinite(yaw).all():
+        raise BadInput(f"sample {int(np.flatnonzero(~np.isfinite(yaw))[0]) + 1} is no finite angle")
+    return yaw
 
 
 @dataclass(frozen=True, slots=True, order=False)
@@ -131,6 +138,8 @@ class Heading:
     @classmethod
     def from_bearing(cls, degrees: float) -> Heading:
         """Make a heading from a compass bearing in degrees, clockwise from north."""
+        if not math.isfinite(degrees):
+            raise BadInput(f"a bearing is a finite angle, not {degrees!r}")
         return cls(math.radians(90.0 - math.fmod(degrees, 360.0)))
 
     @property
@@ -141,7 +150,8 @@ class Heading:
     @property
     def bearing(self) -> float:
         """Compass bearing in degrees, clockwise from north, in [0, 360)."""
-        return (90.0 - math.degrees(self.yaw)) % 360.0
+        bearing = (90.0 - math.degrees(self.yaw)) % 360.0
+        return 0.0 if bearing == 360.0 else bearing  # just west of north the remainder rounds up
 
     @property
     def opposite(self) -> Heading:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -122,7 +123,7 @@ class PlaneMap:
             raise BadInput(f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge")
         n_edges = tails.size // 2
         total = int(tails.max()) + 1 if tails.size else 0
-        count = total if n_vertices is None else int(n_vertices)
+        count = total if n_vertices is None else _whole("n_vertices", n_vertices)
         if count < max(total, 1) or (tails.size and int(tails.min()) < 0):
             raise BadInput(
                 "a map has at least one vertex, and tails are numbered from 0 to n_vertices - 1: "
@@ -130,7 +131,9 @@ class PlaneMap:
             )
         if tails.size and (int(after.min()) < 0 or int(after.max()) >= tails.size):
             raise BadInput(f"next_ccw must hold darts from 0 to {tails.size - 1}")
-        virtual = np.zeros(n_edges, np.bool_) if tether is None else np.array(tether, dtype=np.bool_)
+        if count > max(1, 2 * n_edges):  # refused before anything is as large as such a number
+            raise BadInput(f"{n_edges} edges cannot join {count} vertices; tie separate components with tethers")
+        virtual = np.zeros(n_edges, np.bool_) if tether is None else _array("tether", tether, np.bool_)
         if virtual.shape != (n_edges,):
             raise BadInput(f"tether has shape {virtual.shape}, not ({n_edges},)")
         v_names = vertex_names if isinstance(vertex_names, Names) else Names("vertex", count, vertex_names)
@@ -138,6 +141,7 @@ class PlaneMap:
         if (v_names.size, e_names.size) != (count, n_edges):
             raise BadInput(f"{v_names.size} vertex and {e_names.size} edge names for {count} and {n_edges}")
         angles = _angles(heading, turn, virtual)
+        outer = None if outer is None else _whole("outer", outer)
         return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
 
     @classmethod
@@ -439,8 +443,22 @@ def _same(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> bool:
     return bool(np.array_equal(a, b, equal_nan=True))
 
 
+def _array(name: str, values: ArrayLike, dtype: type[np.generic] | None = None) -> NDArray[Any]:
+    """Copy what was given into an array, or say that it is none."""
+    try:
+        return np.array(values, dtype=dtype)
+    except (TypeError, ValueError, OverflowError):
+        raise BadInput(f"{name} must be an array of numbers, its rows of one length") from None
+
+
+def _whole(name: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise BadInput(f"{name} is a whole number, not {value!r}")
+    return int(value)
+
+
 def _ints(name: str, values: ArrayLike) -> NDArray[np.int32]:
-    array = np.asarray(values)
+    array = _array(name, values)
     if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
         raise BadInput(f"{name} must be a one-dimensional array of integers, not {array.dtype} of shape {array.shape}")
     if array.size and (int(array.max()) > 2**31 - 1 or int(array.min()) < -(2**31)):
@@ -455,7 +473,7 @@ def _angles(
         return None
     if heading is None or turn is None:
         raise BadInput("heading and turn come together: give both or neither")
-    head, turns = np.array(heading, dtype=np.float64), np.array(turn, dtype=np.float64)
+    head, turns = _array("heading", heading, np.float64), _array("turn", turn, np.float64)
     if head.shape != (2 * tether.size,) or turns.shape != (tether.size,):
         raise BadInput(
             f"heading has shape {head.shape} and turn {turns.shape}; for {tether.size} edges they are "

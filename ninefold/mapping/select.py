@@ -71,7 +71,7 @@ def cycle(plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iter
     if edges is not None:
         rows = [_edge_row(plane, name) for name in _list(edges, "cycle")]
     else:
-        darts = _walk(plane, _list(steps or [], "cycle"), close=True)
+        darts = _walk(plane, [] if steps is None else _list(steps, "cycle"), close=True)
         _no_edge_twice(plane, darts, "cycle")
         rows = [d >> 1 for d in darts]
     if not rows:

@@ -187,11 +187,13 @@ class Region:
     @classmethod
     def from_faces(cls, plane: PlaneMap, faces: Iterable[int]) -> Region:
         """Make the union of bounded faces, given by number. O(E) for the boundary."""
-        numbers = np.unique(np.fromiter(faces, dtype=np.int64))
+        given = list(faces)
+        wrong = next((face for face in given if not 0 <= face < plane.n_faces), None)
+        if wrong is not None:
+            raise BadInput(f"faces are numbered from 0 to {plane.n_faces - 1}; got {wrong}")
+        numbers = np.unique(np.array(given, np.int64))
         if not numbers.size:
             raise EmptySet("a region needs at least one face")
-        if int(numbers[0]) < 0 or int(numbers[-1]) >= plane.n_faces:
-            raise BadInput(f"faces are numbered from 0 to {plane.n_faces - 1}; got {int(numbers[-1])}")
         if plane.outer_face in numbers:
             raise BadInput(f"face {plane.outer_face} is the outer face, which is not bounded; a region has bounded faces")
         ends = ends_of_numbers(plane.containment.preorder[numbers])

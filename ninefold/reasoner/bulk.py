@@ -64,13 +64,17 @@ def relate_pairs(sets: Sequence[Set] | SetTable, pairs: ArrayLike) -> NDArray[np
     >>> names_of(relate_pairs([plane.face(f) for f in (0, 2)], [(0, 1), (1, 1)])).tolist()
     ['meet', 'equal']
     """
-    index = np.asarray(pairs)
+    try:
+        index = np.asarray(pairs)
+    except ValueError:
+        raise BadInput("pairs must be integers of shape (P, 2), and the rows given differ in length") from None
     if index.size == 0:
         return np.zeros(0, np.uint16)
     if index.ndim != 2 or index.shape[1] != 2 or index.dtype.kind not in "iu":
         raise BadInput(f"pairs must be integers of shape (P, 2), not {index.dtype} of shape {index.shape}")
     if int(index.min()) < 0 or int(index.max()) >= len(sets):
-        raise BadInput(f"pairs must hold rows of sets, 0 to {len(sets) - 1}; found {int(index.max())}")
+        wrong = int(index.min()) if int(index.min()) < 0 else int(index.max())
+        raise BadInput(f"pairs must hold rows of sets, 0 to {len(sets) - 1}; found {wrong}")
     if not isinstance(sets, SetTable) and len(index) < _SMALL:
         _one_map(sets)
         return np.array([relate_code(sets[i], sets[j]) for i, j in index.tolist()], np.uint16)

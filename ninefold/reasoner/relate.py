@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ninefold.errors import BadInput
 from ninefold.mapping.sets import Line, Point, Region, same_map
 
 from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II, X_SHIFT, Y_SHIFT, Relation, converse_code
@@ -61,6 +62,9 @@ def relate(x: Set, y: Set) -> Relation:
     >>> relate(room, house), relate(plane.edge(0, 4), house)
     (Relation(inside, 2FF1FF212), Relation(coveredBy, 1FF00F212))
     """
+    for given in (x, y):
+        if not isinstance(given, Point | Line | Region):
+            raise BadInput(f"relate takes points, lines and regions of a map, not {given!r}")
     same_map(x, y)
     return Relation(relate_code(x, y))
 

@@ -272,8 +272,10 @@ def converse_codes(codes: ArrayLike) -> NDArray[np.uint16]:
 
 
 def _looked_up(codes: ArrayLike, word_of: object, dtype: str) -> NDArray[np.str_]:
-    array = np.asarray(codes, dtype=np.int64)
+    array = np.asarray(codes)
+    if array.size and (array.dtype.kind not in "iu" or int(array.min()) < 0 or int(array.max()) >= 1 << 14):
+        raise BadInput("codes of relations are integers from 0 to 16383, as relate_pairs and relate_all give them")
     table = np.zeros(1 << 14, dtype)
     for code in np.flatnonzero(np.bincount(array.ravel(), minlength=1)).tolist():
         table[code] = word_of(code)  # type: ignore[operator]
-    return table[array]
+    return np.asarray(table[array.astype(np.int64)])

@@ -276,3 +276,25 @@ def test_what_a_map_derives_is_read_only_too():
     for array in [*arrays, index.preorder, index.face_at, index.low, index.high]:
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: PlaneMap.from_darts([[0], [1, 2]], [0, 1]), "tail must be"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], tether=[[0], [1, 2]]), "tether must be"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], heading=["east", "west"], turn=[0]), "heading must be"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], 0.5), "outer is a whole number, not 0.5"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], True), "outer is a whole number"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], n_vertices=2.7), "n_vertices is a whole number"),
+        (lambda: PlaneMap.from_darts([0, 1], [0, 1], n_vertices=10**15), "cannot join 1000000000000000 vertices"),
+        (lambda: PlaneMap.from_darts([0, 2**31 - 2], [0, 1]), "cannot join"),
+        (lambda: PlaneMap.from_geometry([(0, 0), (10**400, 0)], [(0, 1)]), "array of numbers"),
+        (lambda: PlaneMap.from_geometry([(0, 0), (1, 0)], [(0, 1)], [[(0, 0), (10**400, 1), (1, 0)]]), "array of numbers"),
+        (lambda: PlaneMap.from_geometry([(0, 0), (1, 0)], [(0, 1), (1,)]), "differ in length"),
+        (lambda: PlaneMap.from_geometry([(0, 0), (1, 0)], [(0, -1)]), "found -1"),
+    ],
+)
+def test_what_is_no_array_or_number_is_bad_input(make, match):
+    with pytest.raises(BadInput, match=match):
+        make()

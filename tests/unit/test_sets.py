@@ -1,10 +1,11 @@
 """Naming sets, region algebra, splitting, and their errors."""
 
+import numpy as np
 import pytest
 
 from ninefold.errors import AmbiguousDart, BadInput, DifferentMaps, EmptySet, NotACycle, UnknownName
 from ninefold.mapping import Line, PlaneMap, Point, Region
-from ninefold.reasoner import containment_tree, relate, relate_all, relate_pairs
+from ninefold.reasoner import containment_tree, de9im_strings, names_of, relate, relate_all, relate_pairs
 
 
 @pytest.fixture
@@ -139,3 +140,27 @@ def test_a_set_survives_its_text_and_the_map_its_hash(plane):
     region = plane.region([0])
     assert isinstance(region, Region)
     assert {region: 1}[plane.region([0])] == 1
+
+
+def test_a_cycle_from_an_array(plane):
+    assert plane.cycle(np.array([0, 1, 6, 7])) == plane.cycle([0, 1, 6, 7])
+
+
+@pytest.mark.parametrize("face", [-1, 2**70, -(2**70)])
+def test_a_face_number_out_of_range_is_named(plane, face):
+    with pytest.raises(BadInput, match=f"got {face}"):
+        plane.region([0, face])
+
+
+def test_questions_about_no_sets_and_no_codes(plane):
+    for x, y in (("kitchen", plane.vertex(0)), (plane.vertex(0), "kitchen")):
+        with pytest.raises(BadInput, match="not 'kitchen'"):
+            relate(x, y)
+    with pytest.raises(BadInput, match="differ in length"):
+        relate_pairs([plane.vertex(0)], [[0], [0, 0]])
+    with pytest.raises(BadInput, match="found -1"):
+        relate_pairs([plane.vertex(0)], [(0, -1)])
+    for codes in ([-1], [1 << 14], ["meet"], [0.5]):
+        for words in (de9im_strings, names_of):
+            with pytest.raises(BadInput, match="0 to 16383"):
+                words(codes)
