@@ -56,6 +56,8 @@ def from_networkx(graph: Any, *, outer: Sequence[Any] | None = None) -> PlaneMap
             "networkx.check_planarity"
         )
     rotation: dict[str | int, list[str]] = {str(v): [str(w) for w in graph.neighbors_cw_order(v)][::-1] for v in graph}
+    if len(rotation) != len(graph):
+        raise BadInput("two nodes have the same name once they are read as strings; relabel the graph")
     start = None if outer is None else [str(name) for name in outer]
     return from_rotation(rotation, outer=start)
 

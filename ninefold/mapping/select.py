@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -184,10 +185,20 @@ def _walk(plane: PlaneMap, steps: list[str | int], *, close: bool) -> list[int]:
     """Turn steps into darts. After an ``@edge`` its own end may be named again; `close` goes back to the start."""
     if not steps:
         return []
-    tail = plane.tail
     edges = [_edge_row(plane, step) if str(step).startswith("@") else -1 for step in steps]
-    at = _start(plane, steps, edges)
-    start, darts = at, []
+    first, *others = _starts(plane, steps, edges)
+    try:
+        return _walk_from(plane, first, steps, edges, close=close)
+    except (NotACycle, UnknownName):
+        for other in others:
+            with suppress(NotACycle, UnknownName):
+                return _walk_from(plane, other, steps, edges, close=close)
+        raise
+
+
+def _walk_from(plane: PlaneMap, start: int, steps: list[str | int], edges: list[int], *, close: bool) -> list[int]:
+    tail = plane.tail
+    at, darts = start, list[int]()
     after_edge = True  # the first vertex of the list is where the walk stands
     for step, e in zip(steps, edges, strict=True):
         if e >= 0:
@@ -208,19 +219,19 @@ def _walk(plane: PlaneMap, steps: list[str | int], *, close: bool) -> list[int]:
     return darts
 
 
-def _start(plane: PlaneMap, steps: list[str | int], edges: list[int]) -> int:
-    """Return the vertex a walk starts at; where it begins with an edge, the end from which the next step follows."""
+def _starts(plane: PlaneMap, steps: list[str | int], edges: list[int]) -> list[int]:
+    """Return the vertex a walk starts at; where it begins with an edge, the ends from which the next step follows."""
     if edges[0] < 0:
-        return plane.vertex_names.row(steps[0])
+        return [plane.vertex_names.row(steps[0])]
     u, v = int(plane.tail[2 * edges[0]]), int(plane.tail[2 * edges[0] + 1])
     if len(steps) == 1 or u == v:
-        return u
+        return [u]
     if edges[1] >= 0:
         ends = {int(plane.tail[2 * edges[1]]), int(plane.tail[2 * edges[1] + 1])}
     else:
         to = plane.vertex_names.row(steps[1])
         ends = {to} if to in (u, v) else {int(plane.tail[d ^ 1]) for d in plane.darts_at(to)}
-    return u if v in ends else v
+    return [at for at, far in ((u, v), (v, u)) if far in ends] or [v]
 
 
 def _no_edge_twice(plane: PlaneMap, darts: list[int], what: str) -> None:

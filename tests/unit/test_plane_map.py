@@ -298,3 +298,10 @@ def test_what_a_map_derives_is_read_only_too():
 def test_what_is_no_array_or_number_is_bad_input(make, match):
     with pytest.raises(BadInput, match=match):
         make()
+
+
+def test_nodes_that_read_the_same_are_refused():
+    graph = nx.PlanarEmbedding()
+    graph.add_nodes_from([1, "1"])
+    with pytest.raises(BadInput, match="same name"):
+        PlaneMap.from_networkx(graph)

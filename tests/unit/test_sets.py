@@ -164,3 +164,16 @@ def test_questions_about_no_sets_and_no_codes(plane):
         for words in (de9im_strings, names_of):
             with pytest.raises(BadInput, match="0 to 16383"):
                 words(codes)
+
+
+@pytest.mark.parametrize("vertices", ["abc", "bac"])
+def test_a_path_may_begin_with_two_parallel_edges(vertices):
+    """The first edge is left at the end from which the whole list follows, not only its second step."""
+    rotation = {"a": [("b", "x"), ("b", "y"), ("c", "z")], "b": [("a", "y"), ("a", "x")], "c": [("a", "z")]}
+    plane = PlaneMap.from_rotation({v: rotation[v] for v in vertices}, outer=("a", "b", "x"))
+    for first, second in (("x", "y"), ("y", "x")):
+        path = plane.path([f"@{first}", f"@{second}", "c"])
+        assert path.edge_names == (first, second, "z")
+        assert path == plane.path(["a", f"@{first}", f"@{second}", "@z"])
+    with pytest.raises(NotACycle, match="used twice"):
+        plane.path(["@x", "@y", "@x", "c"])
