@@ -1,10 +1,10 @@
 """Kernels that relate pairs of sets from their tables of stars.
 
 The cells of the map are grouped in *blocks* of 64, and a set keeps one mask for every block it touches. One set X is
-*stamped*: ``slot[block]`` holds its block entry, which is valid when it lies in the range of X, so nothing is ever cleared,
-and all slots stay in the nearest cache. The blocks of its partners are streamed past it; the common bits of two masks are
-the shared cells, and counting the bits below gives their entries. A set's signature tells which of 256 patches of the map it
-touches; of two regions only the blocks in common patches are streamed, and two sets with no common patch are *apart*.
+*stamped*: ``slot[block]`` holds its block entry, every other slot an entry without cells. All slots stay in the nearest
+cache. The blocks of its partners are streamed past it; the common bits of two masks are the shared cells, and counting the
+bits below gives their entries. A set's signature tells which of 256 patches of the map it touches; of two large regions only
+the blocks in common patches are streamed, and two sets with no common patch are *apart*.
 
 The inner kernels are inlined and the outer ones allocate nothing and count no references, since passing arrays costs more
 than relating two short cycles. Codes are those of `ninefold.reasoner.relation`.
@@ -27,14 +27,15 @@ __all__ = ["Scratch", "Stars", "all_pairs", "blocks", "cell_sets", "grouped", "l
 
 ALL_EIGHT = II | IB | IE | BI | BB | BE | EI | EB
 NONE = np.uint64(0)
+FEW_BLOCKS = 40
+"""A region of at most so many blocks is streamed whole: finding common patches would cost more than it saves."""
 
 
 class Stars(NamedTuple):
     """The stars of n sets; entries of one set are consecutive (see `ninefold.reasoner._stars` for their fields)."""
 
     cell: NDArray[np.int32]
-    sectors: NDArray[np.uint64]
-    darts: NDArray[np.uint64]
+    star: NDArray[np.uint64]  # (M, 2) sectors and darts
     part: NDArray[np.int32]
     start: NDArray[np.int64]  # (n + 1,) entries of each set
     ends: NDArray[np.int32]  # interval ends of the regions, one after another
@@ -48,7 +49,7 @@ class Stars(NamedTuple):
     signature: NDArray[np.uint64]  # (n, 4)
     block: NDArray[np.int32]  # the blocks each set touches, ascending, set after set
     mask: NDArray[np.uint64]  # which of the 64 cells of the block
-    head: NDArray[np.int64]  # the first entry in the block
+    head: NDArray[np.int64]  # the first entry in the block; after the last block one without cells
     block_start: NDArray[np.int64]  # (n + 1,)
     run: NDArray[np.int64]  # where the blocks of each touched patch start, set after set, and the total number of blocks
     run_start: NDArray[np.int64]  # (n + 1,)
@@ -89,11 +90,9 @@ def popcount(x):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline="always")
-def stamped_entry(t, w, x, cell):  # type: ignore[no-untyped-def]
-    """Return the entry of the stamped set x in a cell, or -1."""
+def stamped_entry(t, w, cell):  # type: ignore[no-untyped-def]
+    """Return the entry of the stamped set in a cell, or -1."""
     b = np.int64(w.slot[cell >> 6])
-    if b < t.block_start[x] or b >= t.block_start[x + 1]:
-        return -1
     bit = np.uint64(1) << np.uint64(cell & 63)
     if not t.mask[b] & bit:
         return -1
@@ -119,56 +118,63 @@ def are_apart(t, x, y):  # type: ignore[no-untyped-def]
 @kernel(inline="always")
 def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate region y to the stamped region x."""
-    first = t.block_start[x]
-    count = t.block_start[x + 1] - first
     many_x = t.part_start[x + 1] - t.part_start[x] > 1
     many_y = t.part_start[y + 1] - t.part_start[y] > 1
     ii = ib = ie = bi = be = ei = eb = curve = NONE
     touched = False
     full = False
     at = t.run_start[y]
-    for k in range(0 if apart else 4):
-        its = t.signature[y, k]
-        patches = its & t.signature[x, k]
-        while patches and not full:
-            patch = patches & (~patches + np.uint64(1))  # the lowest common patch
+    first = t.block_start[y]
+    stop = first if apart else t.block_start[y + 1]
+    k = 4 if stop - first <= FEW_BLOCKS else -1  # the word of the signature that is being looked at, 4 for none
+    patches = NONE
+    its = NONE
+    while not full:
+        if k < 4:  # many blocks: find the next common patch and take its blocks alone
+            while not patches and k < 3:
+                at += popcount(its)
+                k += 1
+                its = t.signature[y, k]
+                patches = its & t.signature[x, k]
+            if not patches:
+                break
+            patch = patches & (~patches + np.uint64(1))
             patches ^= patch
             r = at + popcount(its & (patch - np.uint64(1)))
-            for b in range(t.run[r], t.run[r + 1]):
-                a = np.int64(w.slot[t.block[b]])
-                if np.uint64(a - first) >= np.uint64(count):
-                    continue
-                cells = t.mask[a] & t.mask[b]
-                while cells:
-                    bit = cells & (~cells + np.uint64(1))
-                    cells ^= bit
-                    i = t.head[a] + popcount(t.mask[a] & (bit - np.uint64(1)))
-                    j = t.head[b] + popcount(t.mask[b] & (bit - np.uint64(1)))
-                    touched = True
-                    if many_x:
-                        w.mark[t.part_start[x] + t.part[i]] = tick
-                    if many_y:
-                        w.mark[t.part_start[y] + t.part[j]] = tick
-                    sx = t.sectors[i]
-                    sy = t.sectors[j]
-                    dx = t.darts[i]
-                    dy = t.darts[j]
-                    curve |= dx & dy
-                    ii |= sx & sy
-                    ie |= sx & ~sy
-                    ei |= sy & ~sx
-                    ox = dx & ~dy
-                    oy = dy & ~dx
-                    bi |= ox & sy
-                    be |= ox & ~sy
-                    ib |= oy & sx
-                    eb |= oy & ~sx
-                    if curve and ii and ib and ie and bi and be and ei and eb:
-                        full = True  # nothing more to learn, and an untouched part could add nothing either
-                        break
-                if full:
-                    break
-        at += popcount(its)
+            first = t.run[r]
+            stop = t.run[r + 1]
+        for b in range(first, stop):
+            a = np.int64(w.slot[t.block[b]])
+            cells = t.mask[a] & t.mask[b]
+            while cells:
+                bit = cells & (~cells + np.uint64(1))
+                cells ^= bit
+                i = t.head[a] + popcount(t.mask[a] & (bit - np.uint64(1)))
+                j = t.head[b] + popcount(t.mask[b] & (bit - np.uint64(1)))
+                touched = True
+                if many_x:
+                    w.mark[t.part_start[x] + t.part[i]] = tick
+                if many_y:
+                    w.mark[t.part_start[y] + t.part[j]] = tick
+                sx = t.star[i, 0]
+                dx = t.star[i, 1]
+                sy = t.star[j, 0]
+                dy = t.star[j, 1]
+                curve |= dx & dy
+                ii |= sx & sy
+                ie |= sx & ~sy
+                ei |= sy & ~sx
+                ox = dx & ~dy
+                oy = dy & ~dx
+                bi |= ox & sy
+                be |= ox & ~sy
+                ib |= oy & sx
+                eb |= oy & ~sx
+            if curve and ii and ib and ie and bi and be and ei and eb:
+                full = True  # nothing more to learn, and an untouched part could add nothing either
+                break
+        if k == 4:
+            break
     bits = 0
     if full:
         bits = ALL_EIGHT | CURVE
@@ -210,7 +216,7 @@ def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     b = y if line_is_x else x  # the region
     bits = EI
     for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
-        i = stamped_entry(t, w, x, t.cell[j])
+        i = stamped_entry(t, w, t.cell[j])
         if i < 0:
             continue
         m = i if line_is_x else j
@@ -218,10 +224,10 @@ def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
         w.hit[m] = tick
         w.mark[t.part_start[a] + t.part[m]] = tick
         w.mark[t.part_start[b] + t.part[k]] = tick
-        darts = t.darts[m]
-        sectors = t.sectors[k]
-        curve = t.darts[k]
-        bits |= BB if t.sectors[m] & np.uint64(1) else IB
+        darts = t.star[m, 1]
+        sectors = t.star[k, 0]
+        curve = t.star[k, 1]
+        bits |= BB if t.star[m, 0] & np.uint64(1) else IB
         if darts & curve:
             bits |= IB | CURVE
         if darts & sectors & ~curve:
@@ -232,7 +238,7 @@ def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
             bits |= EB
     if t.n_ends[a] > 0:
         for m in range(t.start[a], t.start[a + 1]):
-            if t.sectors[m] == np.uint64(3) and w.hit[m] != tick:
+            if t.star[m, 0] == np.uint64(3) and w.hit[m] != tick:
                 bits |= BI if has_number(t, b, t.number_at[t.cell[m]]) else BE
     for p in range(t.part_start[a], t.part_start[a + 1]):
         if w.mark[p] != tick:
@@ -252,13 +258,13 @@ def line_line(t, w, x, y, apart):  # type: ignore[no-untyped-def]
     ends_y = 0
     vertices = 0
     for j in range(t.start[y], t.start[y] if apart else t.start[y + 1]):
-        i = stamped_entry(t, w, x, t.cell[j])
+        i = stamped_entry(t, w, t.cell[j])
         if i < 0:
             continue
         vertices += 1
-        fx = t.sectors[i]
-        fy = t.sectors[j]
-        shared += popcount(t.darts[i] & t.darts[j])
+        fx = t.star[i, 0]
+        fy = t.star[j, 0]
+        shared += popcount(t.star[i, 1] & t.star[j, 1])
         if fx & np.uint64(1):
             bits |= BB if fy & np.uint64(1) else BI
         else:
@@ -296,6 +302,20 @@ def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     return bits | EE | dx << 10 | dy << 12
 
 
+@kernel(inline="always")
+def stamp(t, w, x):  # type: ignore[no-untyped-def]
+    """Let the slots of set x point at its blocks."""
+    for b in range(t.block_start[x], t.block_start[x + 1]):
+        w.slot[t.block[b]] = b
+
+
+@kernel(inline="always")
+def unstamp(t, w, x):  # type: ignore[no-untyped-def]
+    """Let the slots of set x point at the block without cells again."""
+    for b in range(t.block_start[x], t.block_start[x + 1]):
+        w.slot[t.block[b]] = t.block.size
+
+
 @kernel
 def blocks(cell, start, n_cells):  # type: ignore[no-untyped-def]
     """Find the blocks and patches each set touches, its entries being sorted by cell.
@@ -306,7 +326,7 @@ def blocks(cell, start, n_cells):  # type: ignore[no-untyped-def]
     n_blocks = (n_cells >> 6) + 1
     block = np.empty(cell.size, np.int32)
     mask = np.zeros(cell.size, np.uint64)
-    head = np.empty(cell.size, np.int64)
+    head = np.zeros(cell.size + 1, np.int64)
     block_start = np.zeros(n + 1, np.int64)
     signature = np.zeros((n, 4), np.uint64)
     run = np.empty(cell.size + 1, np.int64)
@@ -331,15 +351,9 @@ def blocks(cell, start, n_cells):  # type: ignore[no-untyped-def]
         block_start[x + 1] = end
         run_start[x + 1] = runs
     run[runs] = end
-    return (
-        block[:end].copy(),
-        mask[:end].copy(),
-        head[:end].copy(),
-        block_start,
-        signature,
-        run[: runs + 1].copy(),
-        run_start,
-    )
+    filled = np.zeros(end + 1, np.uint64)  # the last one has no cells: where a slot points that no set has stamped
+    filled[:end] = mask[:end]
+    return block[:end].copy(), filled, head[: end + 1].copy(), block_start, signature, run[: runs + 1].copy(), run_start
 
 
 @kernel
@@ -364,12 +378,12 @@ def listed_pairs(t, w, order, group, ys, codes):  # type: ignore[no-untyped-def]
     for x in range(t.start.size - 1):
         if group[x] == group[x + 1]:
             continue
-        for b in range(t.block_start[x], t.block_start[x + 1]):
-            w.slot[t.block[b]] = b
+        stamp(t, w, x)
         for at in range(group[x], group[x + 1]):
             k = order[at]
             y = ys[k]
             codes[k] = one_pair(t, w, x, y, are_apart(t, x, y), k)
+        unstamp(t, w, x)
 
 
 @kernel
@@ -399,8 +413,7 @@ def all_pairs(t, w, owner, begin, near, codes):  # type: ignore[no-untyped-def]
     n = t.start.size - 1
     tick = 0
     for x in range(n):
-        for b in range(t.block_start[x], t.block_start[x + 1]):
-            w.slot[t.block[b]] = b
+        stamp(t, w, x)
         for i in range(t.start[x], t.start[x + 1]):
             for k in range(begin[t.cell[i]], begin[t.cell[i] + 1]):
                 near[owner[k]] = x
@@ -409,3 +422,4 @@ def all_pairs(t, w, owner, begin, near, codes):  # type: ignore[no-untyped-def]
             code = one_pair(t, w, x, y, near[y] != x, tick)
             codes[x, y] = code
             codes[y, x] = transposed(code & 1023) | t.dim[y] << 10 | t.dim[x] << 12
+        unstamp(t, w, x)

@@ -144,7 +144,7 @@ class SetTable:
         """Return fresh working memory for the pair kernels."""
         entries, parts = int(self.stars.start[-1]), int(self.stars.part_start[-1])
         return _pairs.Scratch(
-            np.full((self.n_cells >> 6) + 1, -1, np.int32),
+            np.full((self.n_cells >> 6) + 1, self.stars.block.size, np.int32),
             np.full(parts + 1, -1, np.int64),
             np.full(entries + 1, -1, np.int64),
         )
@@ -182,8 +182,7 @@ class SetTable:
         block, mask, head, block_start, signature, run, run_start = _pairs.blocks.compiled(cell, start, n_cells)
         stars = _pairs.Stars(
             cell=cell,
-            sectors=sectors,
-            darts=darts,
+            star=np.stack([sectors, darts], axis=1),
             part=part,
             start=start,
             ends=np.concatenate([*ends, _NO_ENDS]),
