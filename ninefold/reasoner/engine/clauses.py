@@ -23,6 +23,7 @@ from .columns import (
     BLOCK_MASK,
     CLAUSE,
     CLAUSE_TROUBLE,
+    HEAD,
     LBD,
     LITERALS,
     MASK,
@@ -32,6 +33,7 @@ from .columns import (
     TICKS,
     TROUBLE,
     TROUBLE_A,
+    TAIL,
     WATCH,
 )
 from .narrow import narrow
@@ -116,7 +118,10 @@ def visit_watches(  # type: ignore[no-untyped-def]
             reg[TROUBLE] = CLAUSE_TROUBLE
             reg[TROUBLE_A] = clause
             return False
-        narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, 2 * other, left, CLAUSE, clause)
+        narrow(
+            dom, edges, nodes, planes, active, trail, reg, converse, size,
+            2 * other, edges[other, TAIL], edges[other, HEAD], left, CLAUSE, clause, True,
+        )  # fmt: skip
         before, node = node, after
     return True
 

@@ -77,6 +77,8 @@ FULL = 21  # mask of the universal relation
 N_BASES = 22
 DENSE = 23  # 1 for bit-planes, 0 for lists of partners
 LOGGING = 24
+NARROWED = 25  # narrowings so far
+CHECKED = 26  # NARROWED when every pair was queued for the last check, or -1
 N_REGISTERS = 28
 
 NO_TROUBLE = 0

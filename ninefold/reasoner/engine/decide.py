@@ -18,7 +18,7 @@ from .columns import LABEL
 
 __all__ = ["decay", "luby", "next_split"]
 
-_DECAY = 0.95
+_DECAY = 0.98
 _LARGEST = 1e100
 
 
@@ -31,7 +31,7 @@ def next_split(dom, edges, stated, activity, hull, size):  # type: ignore[no-unt
         edge = stated[at]
         relation = dom[2 * edge]
         if hull[relation] & ~edges[edge, LABEL] != 0:
-            score = activity[edge] / size[relation]
+            score = activity[edge] / size[relation] ** 0.5
             if score > highest:
                 best, highest = edge, score
     return best

@@ -151,7 +151,7 @@ def triangulated_frame(n: int, i: NDArray[Any], j: NDArray[Any], *, most: int) -
     return Frame(n, order, place, first, (keys % n).astype(np.int32), core, dense=int(first[n]) == n * (n - 1) // 2)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def arc_between(nodes, upper, core, p, q):  # type: ignore[no-untyped-def]
     """Return the arc from node `p` to node `q`, or -1 if the pair is not kept.
 

@@ -25,6 +25,7 @@ from .columns import (
     LAST,
     LEVEL,
     N_EDGES,
+    NARROWED,
     NEW,
     OLD,
     OTHER,
@@ -43,20 +44,16 @@ __all__ = ["backjump", "flip_planes", "list_partner", "narrow"]
 _ONE = np.uint64(1)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def flip_planes(planes, i, k, mask):  # type: ignore[no-untyped-def]
     """Flip the bits of the base relations in `mask` between nodes `i` and `k`, as seen from `i`."""
     word = k // WORD
     bit = _ONE << np.uint64(k % WORD)
-    base = 0
-    while mask != 0:
-        if mask & 1:
-            planes[i, word, base] ^= bit
-        mask >>= 1
-        base += 1
+    for base in range(planes.shape[2]):
+        planes[i, word, base] ^= bit * np.uint64(mask >> base & 1)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def list_partner(active, nodes, node, partner, arc):  # type: ignore[no-untyped-def]
     """Append `partner` to the partners of `node` whose relation is not universal."""
     at = nodes[node, ROOM] + nodes[node, BUSY]
@@ -65,27 +62,31 @@ def list_partner(active, nodes, node, partner, arc):  # type: ignore[no-untyped-
     nodes[node, BUSY] += 1
 
 
-@kernel(_nrt=False)
-def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, new, why, other):  # type: ignore[no-untyped-def]
-    """Give an arc a smaller relation that is not empty, and queue its pair.
+@kernel(_nrt=False, forceinline=True)
+def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i, k, new, why, other, queued):  # type: ignore[no-untyped-def]
+    """Give an arc a smaller relation that is not empty.
 
     Parameters
     ----------
-    arc, new
-        The arc and its relation, a proper subset of the present one.
+    arc, i, k
+        The arc and the nodes it runs from and to.
+    new
+        Its relation, a proper subset of the present one.
     why, other
         The two arcs of the triangle that forces it, in the order of their composition; or DECIDED; or CLAUSE and the
         clause. Written to the trail when the register KEEP is set.
+    queued
+        Whether the triangles over the pair have to be closed.
     """
     edge = arc >> 1
     if arc & 1:
         new = converse[new]
+        i, k = k, i
         if why >= 0:
             why, other = other ^ 1, why ^ 1
     old = dom[2 * edge]
     dom[2 * edge] = new
     dom[2 * edge + 1] = converse[new]
-    i, k = edges[edge, TAIL], edges[edge, HEAD]
     if reg[DENSE]:
         flip_planes(planes, i, k, old ^ new)
         flip_planes(planes, k, i, converse[old ^ new])
@@ -103,7 +104,9 @@ def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, n
         trail[top, DEPTH] = reg[LEVEL]
         edges[edge, LAST] = top
         reg[TOP] = top + 1
-    enqueue(edges, reg[N_EDGES], edge, size[new])
+    reg[NARROWED] += 1
+    if queued:
+        enqueue(edges, reg[N_EDGES], edge, size[new])
 
 
 @kernel(_nrt=False)

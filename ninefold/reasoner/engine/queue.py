@@ -21,7 +21,7 @@ def open_queue(edges, n_edges, n_bases):  # type: ignore[no-untyped-def]
         edges[head, BEHIND] = head
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def enqueue(edges, n_edges, edge, size):  # type: ignore[no-untyped-def]
     """Put a pair at the end of the bucket of its size, taking it out of a former one."""
     if edges[edge, BUCKET] != 0:
@@ -54,7 +54,7 @@ def clear_queue(edges, n_edges, n_bases):  # type: ignore[no-untyped-def]
         pass
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def _unlink(edges, edge):  # type: ignore[no-untyped-def]
     ahead, behind = edges[edge, AHEAD], edges[edge, BEHIND]
     edges[behind, AHEAD] = ahead

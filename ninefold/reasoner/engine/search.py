@@ -21,12 +21,15 @@ from .columns import (
     CLAUSE,
     CONFLICT,
     CONFLICTS,
+    CHECKED,
     CONSISTENT,
     DECIDED,
     DECISIONS,
+    DENSE,
     EDGE,
     FIXPOINT,
     FULL,
+    HEAD,
     INCONSISTENT,
     KEEP,
     LAST,
@@ -39,6 +42,7 @@ from .columns import (
     N_CLAUSES,
     N_EDGES,
     N_NODES,
+    NARROWED,
     NO_TROUBLE,
     PAUSED,
     REDUCE,
@@ -47,6 +51,7 @@ from .columns import (
     ROOT,
     SEEN,
     SINCE_RESTART,
+    TAIL,
     TICKS,
     TOP,
     TRAIL_FULL,
@@ -55,10 +60,10 @@ from .columns import (
 )
 from .decide import decay, luby, next_split
 from .narrow import backjump, narrow
-from .queue import take_smallest
+from .queue import enqueue, take_smallest
 from .sweep import close_triangles
 
-__all__ = ["close", "learn", "search", "settle_root", "state_labels"]
+__all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root", "state_labels"]
 
 RESTART_UNIT = 50
 
@@ -66,16 +71,19 @@ RESTART_UNIT = 50
 @kernel(_nrt=False)
 def state_labels(s, arcs, masks):  # type: ignore[no-untyped-def]
     """Give the stated arcs their relations and queue them."""
+    edges = s.edges
     for k in range(arcs.size):
         if masks[k] != s.reg[FULL]:
+            arc = arcs[k]
+            edge, back = arc >> 1, arc & 1
             narrow(
-                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.reg, s.converse, s.size,
-                arcs[k], masks[k], DECIDED, 0,
+                s.dom, edges, s.nodes, s.planes, s.active, s.trail, s.reg, s.converse, s.size,
+                arc, edges[edge, TAIL + back], edges[edge, HEAD - back], masks[k], DECIDED, 0, True,
             )  # fmt: skip
 
 
 @kernel(_nrt=False)
-def close(s, limit):  # type: ignore[no-untyped-def]
+def propagate(s, limit):  # type: ignore[no-untyped-def]
     """Propagate clauses and triangles until nothing changes: algebraic closure of what is kept.
 
     Returns
@@ -102,9 +110,36 @@ def close(s, limit):  # type: ignore[no-untyped-def]
             return FIXPOINT
         if not close_triangles(
             s.dom, edges, s.nodes, s.upper, s.planes, s.active, trail, reg, s.converse, s.size,
-            s.compose, s.rules, edge,
+            s.compose, s.gates, edge,
         ):  # fmt: skip
             return CONFLICT
+
+
+@kernel(_nrt=False)
+def recheck(s):  # type: ignore[no-untyped-def]
+    """Queue every pair that is not universal, unless that was done since the last narrowing; tell whether it was.
+
+    The dense back end leaves pairs out of the queue when they follow exactly from two others (see `sweep`), so a
+    fixpoint is known to be one only after a round in which nothing changed.
+    """
+    reg = s.reg
+    if reg[DENSE] == 0 or reg[CHECKED] == reg[NARROWED]:
+        return True
+    reg[CHECKED] = reg[NARROWED]
+    for edge in range(reg[N_EDGES]):
+        relation = s.dom[2 * edge]
+        if relation != reg[FULL]:
+            enqueue(s.edges, reg[N_EDGES], edge, s.size[relation])
+    return False
+
+
+@kernel(_nrt=False)
+def close(s, limit):  # type: ignore[no-untyped-def]
+    """Close the stated network at level 0; answers as `propagate`."""
+    while True:
+        status = propagate(s, limit)
+        if status != FIXPOINT or recheck(s):
+            return status
 
 
 @kernel(_nrt=False)
@@ -144,7 +179,7 @@ def learn(s):  # type: ignore[no-untyped-def]
     edge = s.learnt[0, 0]
     narrow(
         s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, reg, s.converse, s.size,
-        2 * edge, s.dom[2 * edge] & s.learnt[0, 1], CLAUSE, clause,
+        2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.dom[2 * edge] & s.learnt[0, 1], CLAUSE, clause, True,
     )  # fmt: skip
     decay(s.activity)
     reg[CONFLICTS] += 1
@@ -161,7 +196,7 @@ def split(s, edge):  # type: ignore[no-untyped-def]
     s.levels[reg[LEVEL]] = reg[TOP]
     narrow(
         s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, reg, s.converse, s.size,
-        2 * edge, s.split[s.dom[2 * edge]], DECIDED, 0,
+        2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.split[s.dom[2 * edge]], DECIDED, 0, True,
     )  # fmt: skip
 
 
@@ -176,7 +211,7 @@ def search(s, limit):  # type: ignore[no-untyped-def]
     reg = s.reg
     while True:
         if reg[TROUBLE] == NO_TROUBLE:
-            status = close(s, limit)
+            status = propagate(s, limit)
             if status != FIXPOINT and status != CONFLICT:
                 return status
         if reg[TROUBLE] != NO_TROUBLE:
@@ -203,7 +238,9 @@ def search(s, limit):  # type: ignore[no-untyped-def]
             continue
         edge = next_split(s.dom, s.edges, s.stated, s.activity, s.hull, s.size)
         if edge < 0:
-            return CONSISTENT
+            if recheck(s):
+                return CONSISTENT
+            continue
         split(s, edge)
 
 

@@ -30,7 +30,7 @@ class State(NamedTuple):
     upper: NDArray[np.int32]
     """Later neighbours of nodes before the core."""
     planes: NDArray[np.uint64]
-    """(n, words, b) bit-planes; of no size for the chordal back end."""
+    """(n, words, w) bit-planes, w the next multiple of 8 above b; of no size for the chordal back end."""
     active: NDArray[np.int32]
     """(2E, 2) partners that are not universal; of no size for the dense back end."""
     trail: NDArray[np.int32]
@@ -66,7 +66,7 @@ class State(NamedTuple):
     compose: NDArray[np.int16]
     hull: NDArray[np.int16]
     split: NDArray[np.int16]
-    rules: NDArray[np.int16]
+    gates: NDArray[np.uint64]
 
 
 def new_state(
@@ -100,7 +100,7 @@ def new_state(
     if frame.dense:
         planes, active = _open_planes(tables, n), np.empty((0, 2), dtype=np.int32)
     else:
-        planes, active = np.empty((0, 0, b), dtype=np.uint64), np.empty((2 * n_edges, 2), dtype=np.int32)
+        planes, active = np.empty((0, 0, 8), dtype=np.uint64), np.empty((2 * n_edges, 2), dtype=np.int32)
         degree = np.bincount(edges[:n_edges, c.TAIL], minlength=n) + np.bincount(edges[:n_edges, c.HEAD], minlength=n)
         np.cumsum(degree, out=nodes[1:, c.ROOM])
 
@@ -141,7 +141,7 @@ def new_state(
         compose=tables.compose,
         hull=tables.hull,
         split=tables.split,
-        rules=tables.rules,
+        gates=tables.gates,
     )
 
 
@@ -151,8 +151,8 @@ def _open_planes(tables: Tables, n: int) -> NDArray[np.uint64]:
     row = np.zeros(words * WORD, dtype=np.uint8)
     row[:n] = 1
     bits = np.packbits(row, bitorder="little").view("<u8").astype(np.uint64)
-    planes = np.empty((n, words, tables.n_bases), dtype=np.uint64)
-    planes[:] = bits[:, np.newaxis]
+    planes = np.zeros((n, words, tables.gates.shape[1]), dtype=np.uint64)
+    planes[:, :, : tables.n_bases] = bits[:, np.newaxis]
     node = np.arange(n)
     for base in range(tables.n_bases):
         if not tables.identity >> base & 1:

@@ -46,9 +46,9 @@ class Tables:
         (m,) int16: least tractable relation that holds a relation.
     split
         (m,) int16: a largest tractable relation inside a relation.
-    rules
-        (m, most) int16. How bit-planes are swept, a relation R a row: the number of rules, then for each its base
-        relation c, a count, and the base relations b with c in ``R;b``. A c that every b allows has no rule.
+    gates
+        (m, w, w) uint64 with w the next multiple of 8 above b: all ones at ``[R, b, c]`` where c is in ``R;b``. What a
+        sweep over bit-planes reads.
     """
 
     n_bases: int
@@ -58,7 +58,7 @@ class Tables:
     compose: NDArray[np.int16]
     hull: NDArray[np.int16]
     split: NDArray[np.int16]
-    rules: NDArray[np.int16]
+    gates: NDArray[np.uint64]
 
     @property
     def full(self) -> int:
@@ -107,11 +107,11 @@ class Tables:
             compose=_blocks(right),
             hull=_hulls(tractable, b),
             split=_splits(tractable, size, b),
-            rules=_rules(_unions(base_composition.T), b),
+            gates=_gates(_unions(base_composition.T)),
         )
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def compose_masks(compose, r, s):  # type: ignore[no-untyped-def]
     """Return the weak composition of two relations."""
     if compose.shape[0] == 1:
@@ -187,22 +187,11 @@ def _splits(tractable: NDArray[np.bool_], size: NDArray[np.int16], b: int) -> ND
     return best
 
 
-def _rules(left: NDArray[np.int16], b: int) -> NDArray[np.int16]:
-    """Return the sweeping rules; ``left[b, R]`` is ``R ; b``."""
-    full = (1 << b) - 1
-    allowed = np.zeros((1 << b, b), dtype=np.int16)  # allowed[R, c] = {b : c in R;b}
-    for k in range(b):
-        for c in range(b):
-            allowed[:, c] |= ((left[k] >> c) & 1) << k
-    count = np.where(allowed == full, 0, np.array([m.bit_count() for m in range(full + 1)])[allowed] + 2)
-    rules = np.zeros((1 << b, 1 + int(count.sum(axis=1).max())), dtype=np.int16)
-    for r in range(1, 1 << b):
-        out: list[int] = []
-        for c in range(b):
-            mask = int(allowed[r, c])
-            if mask != full:
-                members = [k for k in range(b) if mask >> k & 1]
-                out += [c, len(members), *members]
-        rules[r, 0] = sum(1 for c in range(b) if allowed[r, c] != full)
-        rules[r, 1 : 1 + len(out)] = out
-    return rules
+def _gates(left: NDArray[np.int16]) -> NDArray[np.uint64]:
+    """Spread composition into words of ones and zeros; ``left[b, R]`` is ``R ; b``."""
+    b = len(left)
+    width = (b + 7) // 8 * 8
+    gates = np.zeros((1 << b, width, width), dtype=np.uint64)
+    for c in range(b):
+        gates[:, :b, c] = (-(left.T >> c & 1).astype(np.int64)).view(np.uint64)
+    return gates

@@ -29,7 +29,7 @@ def n_words(members: int) -> int:
     return (members + WORD - 1) // WORD
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def bit_count(x):  # type: ignore[no-untyped-def]
     """Return the number of set bits of a uint64, as an int."""
     x = x - ((x >> _ONE) & _PAIRS)
@@ -40,7 +40,7 @@ def bit_count(x):  # type: ignore[no-untyped-def]
     return int((x + (x >> _32)) & _LOW_BYTE)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, forceinline=True)
 def lowest_bit(x):  # type: ignore[no-untyped-def]
     """Return the index of the lowest set bit of a uint64 that is not zero."""
     below = (x - _ONE) & ~x
