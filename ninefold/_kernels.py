@@ -20,6 +20,7 @@ runs plain, and when it is compiled they are compiled with it.
 
 from __future__ import annotations
 
+import dis
 import functools
 import hashlib
 import types
@@ -56,15 +57,16 @@ class Kernel(Generic[P, R]):
                 self._compiled = numba.njit(**self._options)(function)
         return self._compiled
 
-    def _called(self) -> dict[str, Kernel[Any, Any]]:
-        """Return the kernels that the function's text names, by name."""
+    def _globals(self) -> dict[str, Any]:
+        """Return the module's names that the function reads (not the attributes, which may be called alike)."""
         known = self.plain.__globals__
-        return {name: known[name] for name in self.plain.__code__.co_names if isinstance(known.get(name), Kernel)}
+        read = {step.argval for step in dis.get_instructions(self.plain) if step.opname == "LOAD_GLOBAL"}
+        return {name: known[name] for name in sorted(read) if name in known}
 
     def _linked(self) -> Any:
         """Return the function with compiled kernels where it names kernels, as numba needs it."""
         plain = self.plain
-        scope = {**plain.__globals__, **{name: other.compiled for name, other in self._called().items()}}
+        scope = {**plain.__globals__, **{k: v.compiled for k, v in self._globals().items() if isinstance(v, Kernel)}}
         linked = types.FunctionType(plain.__code__, scope, plain.__name__, plain.__defaults__, plain.__closure__)
         linked.__module__ = plain.__module__
         # numba's cache looks for changes in the file of this function only, so the name carries what comes from others
@@ -74,10 +76,9 @@ class Kernel(Generic[P, R]):
     @functools.cached_property
     def fingerprint(self) -> str:
         """Eight hex digits that change with the code, the constants and the kernels this kernel is made of."""
-        known, code = self.plain.__globals__, self.plain.__code__
+        code = self.plain.__code__
         parts = [code.co_code.hex(), repr(code.co_consts), repr(sorted(self._options.items()))]
-        for name in code.co_names:
-            value = known.get(name)
+        for name, value in self._globals().items():
             if isinstance(value, Kernel):
                 parts.append(f"{name}={value.fingerprint}")
             elif isinstance(value, int | float):

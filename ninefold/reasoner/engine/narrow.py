@@ -1,0 +1,134 @@
+"""Make a relation smaller, and take that back.
+
+Everything that follows from a pair's relation is kept beside it: the relation of the converse arc, the bit-planes (dense
+back end) or the lists of partners that are not universal (chordal back end), and the trail.
+
+Bit-planes: bit ``k % 64`` of ``planes[i, k // 64, b]`` says that base relation b is possible between nodes i and k.
+Lists: the rows ``nodes[i, ROOM] ...`` of `active` hold (partner, arc to it), newest last, ``nodes[i, BUSY]`` of them;
+narrowings are taken back in reverse order, so that a list is a stack.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ninefold._kernels import kernel
+
+from .columns import (
+    BUSY,
+    DENSE,
+    DEPTH,
+    EDGE,
+    FULL,
+    HEAD,
+    KEEP,
+    LAST,
+    LEVEL,
+    N_EDGES,
+    NARROWED,
+    NEW,
+    OLD,
+    OTHER,
+    PREV,
+    ROOM,
+    SEEN,
+    TAIL,
+    TOP,
+    WHY,
+)
+from .queue import clear_queue, enqueue
+from .words import WORD
+
+__all__ = ["backjump", "flip_planes", "list_partner", "narrow"]
+
+_ONE = np.uint64(1)
+
+
+@kernel(_nrt=False, forceinline=True)
+def flip_planes(planes, i, k, mask):  # type: ignore[no-untyped-def]
+    """Flip the bits of the base relations in `mask` between nodes `i` and `k`, as seen from `i`."""
+    word = k // WORD
+    bit = _ONE << np.uint64(k % WORD)
+    for base in range(planes.shape[2]):
+        planes[i, word, base] ^= bit * np.uint64(mask >> base & 1)
+
+
+@kernel(_nrt=False, forceinline=True)
+def list_partner(active, nodes, node, partner, arc):  # type: ignore[no-untyped-def]
+    """Append `partner` to the partners of `node` whose relation is not universal."""
+    at = nodes[node, ROOM] + nodes[node, BUSY]
+    active[at, 0] = partner
+    active[at, 1] = arc
+    nodes[node, BUSY] += 1
+
+
+@kernel(_nrt=False, forceinline=True)
+def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i, k, new, why, other, queued):  # type: ignore[no-untyped-def]
+    """Give an arc a smaller relation that is not empty.
+
+    Parameters
+    ----------
+    arc, i, k
+        The arc and the nodes it runs from and to.
+    new
+        Its relation, a proper subset of the present one.
+    why, other
+        The two arcs of the triangle that forces it, in the order of their composition; or DECIDED; or CLAUSE and the
+        clause. Written to the trail when the register KEEP is set.
+    queued
+        Whether the triangles over the pair have to be closed.
+    """
+    edge = arc >> 1
+    if arc & 1:
+        new = converse[new]
+        i, k = k, i
+        if why >= 0:
+            why, other = other ^ 1, why ^ 1
+    old = dom[2 * edge]
+    dom[2 * edge] = new
+    dom[2 * edge + 1] = converse[new]
+    if reg[DENSE]:
+        flip_planes(planes, i, k, old ^ new)
+        flip_planes(planes, k, i, converse[old ^ new])
+    elif old == reg[FULL]:
+        list_partner(active, nodes, i, k, 2 * edge)
+        list_partner(active, nodes, k, i, 2 * edge + 1)
+    if reg[KEEP]:
+        top = reg[TOP]
+        trail[top, EDGE] = edge
+        trail[top, OLD] = old
+        trail[top, NEW] = new
+        trail[top, WHY] = why
+        trail[top, OTHER] = other
+        trail[top, PREV] = edges[edge, LAST]
+        trail[top, DEPTH] = reg[LEVEL]
+        edges[edge, LAST] = top
+        reg[TOP] = top + 1
+    reg[NARROWED] += 1
+    if queued:
+        enqueue(edges, reg[N_EDGES], edge, size[new])
+
+
+@kernel(_nrt=False)
+def backjump(dom, edges, nodes, planes, active, trail, levels, reg, converse, n_bases, level):  # type: ignore[no-untyped-def]
+    """Take back every narrowing above decision level `level`, and empty the queue."""
+    clear_queue(edges, reg[N_EDGES], n_bases)
+    if reg[LEVEL] <= level:
+        return
+    start = levels[level + 1]
+    for t in range(reg[TOP] - 1, start - 1, -1):
+        edge = trail[t, EDGE]
+        old, new = trail[t, OLD], trail[t, NEW]
+        dom[2 * edge] = old
+        dom[2 * edge + 1] = converse[old]
+        i, k = edges[edge, TAIL], edges[edge, HEAD]
+        if reg[DENSE]:
+            flip_planes(planes, i, k, old ^ new)
+            flip_planes(planes, k, i, converse[old ^ new])
+        elif old == reg[FULL]:
+            nodes[i, BUSY] -= 1
+            nodes[k, BUSY] -= 1
+        edges[edge, LAST] = trail[t, PREV]
+    reg[TOP] = start
+    reg[SEEN] = start
+    reg[LEVEL] = level

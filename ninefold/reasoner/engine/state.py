@@ -1,0 +1,160 @@
+"""The arrays a search works on, and how they are laid out for a network."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import columns as c
+from .words import WORD, n_words
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .graph import Frame
+    from .tables import Tables
+
+__all__ = ["State", "new_state"]
+
+
+class State(NamedTuple):
+    """Everything a kernel of the engine reads or writes. Columns and registers are named in `columns`."""
+
+    dom: NDArray[np.int16]
+    """(2E,) relation of every arc."""
+    edges: NDArray[np.int32]
+    """(E + b + 1, EDGE_COLUMNS); the last rows head the queue's buckets."""
+    nodes: NDArray[np.int32]
+    """(n + 1, NODE_COLUMNS)."""
+    upper: NDArray[np.int32]
+    """Later neighbours of nodes before the core."""
+    planes: NDArray[np.uint64]
+    """(n, words, w) bit-planes, w the next multiple of 8 above b; of no size for the chordal back end."""
+    active: NDArray[np.int32]
+    """(2E, 2) partners that are not universal; of no size for the dense back end."""
+    trail: NDArray[np.int32]
+    """(capacity, TRAIL_COLUMNS)."""
+    levels: NDArray[np.int32]
+    """First trail entry of every level."""
+    reg: NDArray[np.int64]
+    """Registers."""
+    arena: NDArray[np.int32]
+    """Clauses, one after another."""
+    place: NDArray[np.int32]
+    """Where each clause starts."""
+    watch: NDArray[np.int32]
+    """(2 clauses, WATCH_COLUMNS)."""
+    activity: NDArray[np.float64]
+    """(E + 1,); the last one is the present gain."""
+    stated: NDArray[np.int32]
+    """Pairs with a label that may still need a split."""
+    held: NDArray[np.int32]
+    """(E,) scratch: pairs with a premise."""
+    learnt: NDArray[np.int32]
+    """(E + 3, 2) scratch: the clause being made."""
+    out: NDArray[np.int32]
+    """(E + 3, 2) scratch: premises of one entry."""
+    stack: NDArray[np.int32]
+    """(k, 2) scratch for minimisation."""
+    stamp: NDArray[np.int32]
+    """Scratch by level."""
+    log: NDArray[np.int32]
+    """Learned clauses not yet written to the proof: a count, then (edge, mask) pairs."""
+    converse: NDArray[np.int16]
+    size: NDArray[np.int16]
+    compose: NDArray[np.int16]
+    hull: NDArray[np.int16]
+    split: NDArray[np.int16]
+    gates: NDArray[np.uint64]
+
+
+def new_state(
+    tables: Tables,
+    frame: Frame,
+    arcs: NDArray[np.int64],
+    masks: NDArray[Any],
+    *,
+    rng: np.random.Generator,
+    logging: bool = False,
+) -> State:
+    """Lay out the arrays for a network; no label is set yet (see `search.state_labels`).
+
+    Parameters
+    ----------
+    arcs, masks
+        Stated arcs, no pair twice, and their relations, none empty.
+    rng
+        Breaks ties between pairs that were never in a conflict.
+    """
+    b, n, n_edges = tables.n_bases, frame.n, frame.n_edges
+    edges = np.zeros((n_edges + b + 1, c.EDGE_COLUMNS), dtype=np.int32)
+    edges[:n_edges, c.TAIL], edges[:n_edges, c.HEAD] = frame.ends()
+    for column in (c.LAST, c.NEED, c.WATCH, c.LABEL):
+        edges[:, column] = -1
+    heads = np.arange(n_edges, n_edges + b + 1)
+    edges[n_edges:, c.AHEAD] = edges[n_edges:, c.BEHIND] = heads
+
+    nodes = np.zeros((n + 1, c.NODE_COLUMNS), dtype=np.int32)
+    nodes[:, c.FIRST] = frame.first
+    if frame.dense:
+        planes, active = _open_planes(tables, n), np.empty((0, 2), dtype=np.int32)
+    else:
+        planes, active = np.empty((0, 0, 8), dtype=np.uint64), np.empty((2 * n_edges, 2), dtype=np.int32)
+        degree = np.bincount(edges[:n_edges, c.TAIL], minlength=n) + np.bincount(edges[:n_edges, c.HEAD], minlength=n)
+        np.cumsum(degree, out=nodes[1:, c.ROOM])
+
+    reg = np.zeros(c.N_REGISTERS, dtype=np.int64)
+    reg[c.FULL], reg[c.N_BASES], reg[c.N_EDGES], reg[c.N_NODES] = tables.full, b, n_edges, n
+    reg[c.CORE], reg[c.DENSE], reg[c.LOGGING] = frame.core, frame.dense, logging
+
+    pair = arcs >> 1
+    label = np.where(arcs & 1, tables.converse[masks], masks)
+    edges[pair, c.LABEL] = label
+    activity = np.zeros(n_edges + 1)
+    activity[pair] = 1e-3 * rng.random(len(pair))
+    activity[n_edges] = 1.0
+
+    return State(
+        dom=np.full(2 * n_edges, tables.full, dtype=np.int16),
+        edges=edges,
+        nodes=nodes,
+        upper=frame.upper,
+        planes=planes,
+        active=active,
+        trail=np.empty((4 * n + 1024, c.TRAIL_COLUMNS), dtype=np.int32),
+        levels=np.zeros(len(arcs) * b + 2, dtype=np.int32),
+        reg=reg,
+        arena=np.empty(1 << 16, dtype=np.int32),
+        place=np.empty(1 << 10, dtype=np.int32),
+        watch=np.empty((2 << 10, c.WATCH_COLUMNS), dtype=np.int32),
+        activity=activity,
+        stated=pair[tables.hull[label] != label].astype(np.int32),
+        held=np.empty(n_edges, dtype=np.int32),
+        learnt=np.empty((n_edges + 3, 2), dtype=np.int32),
+        out=np.empty((n_edges + 3, 2), dtype=np.int32),
+        stack=np.empty((64, 2), dtype=np.int32),
+        stamp=np.zeros(len(arcs) * b + 2, dtype=np.int32),
+        log=np.empty(1 << 16 if logging else 0, dtype=np.int32),
+        converse=tables.converse,
+        size=tables.size,
+        compose=tables.compose,
+        hull=tables.hull,
+        split=tables.split,
+        gates=tables.gates,
+    )
+
+
+def _open_planes(tables: Tables, n: int) -> NDArray[np.uint64]:
+    """Return the bit-planes of n nodes between which everything is possible, and each is equal to itself."""
+    words = n_words(n)
+    row = np.zeros(words * WORD, dtype=np.uint8)
+    row[:n] = 1
+    bits = np.packbits(row, bitorder="little").view("<u8").astype(np.uint64)
+    planes = np.zeros((n, words, tables.gates.shape[1]), dtype=np.uint64)
+    planes[:, :, : tables.n_bases] = bits[:, np.newaxis]
+    node = np.arange(n)
+    for base in range(tables.n_bases):
+        if not tables.identity >> base & 1:
+            planes[node, node // WORD, base] ^= np.uint64(1) << (node % WORD).astype(np.uint64)
+    return planes
