@@ -4,7 +4,7 @@ import typer
 
 from ninefold import __version__
 
-from . import atlas, demo, explore, pictures, relate
+from . import atlas, demo, explore, networks, pictures, relate
 
 __all__ = ["app"]
 
@@ -18,6 +18,13 @@ _COMMANDS = (
     (relate.relate, "relate", "One relation, or a table of all."),
     (pictures.draw, "draw", "Draw the map."),
     (pictures.verify, "verify", "Hold symbolic answers against geometry."),
+    (networks.check, "check", "Is a relation network consistent?"),
+    (networks.prove, "prove", "Confirm a proof of inconsistency."),
+    (networks.infer, "infer", "Which relations are feasible between two entities?"),
+    (networks.ask, "ask", "Is a formula entailed, possible or impossible?"),
+    (networks.repair, "repair", "The cheapest statements to drop."),
+    (networks.scenarios, "scenarios", "The scenarios of a network, one after another."),
+    (networks.compose, "compose", "Compose two relations."),
 )
 
 # Plain help text: loading rich would cost more than everything else that `--help` does.

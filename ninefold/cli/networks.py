@@ -1,4 +1,4 @@
-"""Commands on relation networks: ``check``, ``infer``, ``ask``, ``repair``, ``scenarios`` and ``compose``."""
+"""Commands on relation networks: ``check``, ``prove``, ``infer``, ``ask``, ``repair``, ``scenarios`` and ``compose``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ninefold.reasoner.network import Network, Statement
     from ninefold.reasoner.scenario import Scenario
 
-__all__ = ["ask", "check", "compose", "infer", "repair", "scenarios"]
+__all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 
 YES, NO, SPENT = 0, 1, 3
 
@@ -43,6 +43,9 @@ def check(
     draw: Annotated[
         Path | None, typer.Option(metavar="FILE.svg", help="Draw regions that satisfy it.", show_default=False)
     ] = None,
+    proof: Annotated[
+        Path | None, typer.Option(metavar="LOG", help="Keep a proof of an inconsistency, for `prove`.", show_default=False)
+    ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
@@ -50,7 +53,7 @@ def check(
     import time
 
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
+    from ninefold.io.files import published, refuse_existing
     from ninefold.reasoner.check import Consistent, Inconsistent
     from ninefold.reasoner.check import check as decide
 
@@ -58,13 +61,15 @@ def check(
         if draw.suffix.lower() != ".svg":
             raise BadInput(f"{draw}: pictures are SVG; name a file that ends in .svg")
         refuse_existing(draw, force=force)
+    if proof is not None:
+        refuse_existing(proof, force=force)
     network = _read(net, calculus)
     begin = time.perf_counter()
     with progress(f"deciding {net}"):
-        verdict = decide(network, budget=budget, method=method, seed=seed)
+        verdict = decide(network, budget=budget, method=method, proof=proof is not None, seed=seed)
     seconds = time.perf_counter() - begin
     report: dict[str, Any] = {"verdict": "unknown", "seconds": round(seconds, 6), "scenario": None, "conflict": None}
-    text = f"unknown: {budget} s were not enough"
+    text = ""
     code = SPENT
     if isinstance(verdict, Consistent):
         report["verdict"], code, text = "consistent", YES, f"consistent ({_counts(network)}, {seconds:.3g} s)"
@@ -82,10 +87,50 @@ def check(
             why = _conflict(network, seed, left)
             report["conflict"] = why[0]
             text = f"{text}\n{why[1]}"
+        if proof is not None and verdict.proof is not None:
+            with published(proof, force=force) as file:
+                file.write_text(verdict.proof.to_text(), encoding="ascii")
+            report["proof"] = str(proof)
+    else:
+        report["reason"] = verdict.reason
+        text = f"unknown: {verdict.reason}"
     if draw is not None and code != YES:
         note("nothing was drawn: only a consistent network has a drawing")
     _print(report, text, as_json=as_json)
     return code
+
+
+def prove(
+    net: NetPath,
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="A proof that `check --proof` wrote.", show_default=False)],
+    *,
+    calculus: CalculusName = None,
+    as_json: AsJson = False,
+) -> int:
+    """Confirm, in plain Python and clause by clause, a proof that a network is inconsistent."""
+    from ninefold.errors import BadInput
+    from ninefold.reasoner.prove import Proof
+    from ninefold.reasoner.prove import prove as confirm
+
+    network = _read(net, calculus)
+    try:
+        proof = Proof.from_text(log.read_text(encoding="ascii"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"{log}: cannot be read as a proof ({error})") from None
+    except BadInput as error:
+        raise BadInput(f"{log}: {error}") from None
+    try:
+        with progress(f"confirming {len(proof.clauses):,} clauses"):
+            confirm(network, proof)
+    except BadInput as error:
+        _print(
+            {"proved": False, "clauses": len(proof.clauses), "reason": str(error)}, f"not proved: {error}", as_json=as_json
+        )
+        return NO
+    _print(
+        {"proved": True, "clauses": len(proof.clauses)}, f"proved: {len(proof.clauses):,} clauses confirmed", as_json=as_json
+    )
+    return YES
 
 
 def infer(

@@ -30,10 +30,10 @@ from .columns import (
     N_CLAUSES,
     NEXT,
     SIZE,
+    TAIL,
     TICKS,
     TROUBLE,
     TROUBLE_A,
-    TAIL,
     WATCH,
 )
 from .narrow import narrow

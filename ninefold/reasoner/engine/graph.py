@@ -133,7 +133,7 @@ def triangulated_frame(n: int, i: NDArray[Any], j: NDArray[Any], *, most: int) -
     degree = np.bincount(np.concatenate([i, j]), minlength=n).astype(np.int32)
     order = np.full(n, -1, dtype=np.int32)
     links = np.empty((2 * n + 1, 2), dtype=np.int32)
-    core, kept = eliminate.for_work(len(i) * 20)(rows, degree, order, links, most)
+    core, _ = eliminate.for_work(len(i) * 20)(rows, degree, order, links, most)
     if core < 0:
         return None
     gone = np.zeros(n, dtype=bool)

@@ -18,10 +18,10 @@ from .clauses import add_clause, visit_watches
 from .columns import (
     ARENA_FULL,
     ARENA_TOP,
+    CHECKED,
     CLAUSE,
     CONFLICT,
     CONFLICTS,
-    CHECKED,
     CONSISTENT,
     DECIDED,
     DECISIONS,
@@ -31,7 +31,6 @@ from .columns import (
     FULL,
     HEAD,
     INCONSISTENT,
-    KEEP,
     LAST,
     LEVEL,
     LITERALS,
@@ -170,9 +169,7 @@ def learn(s):  # type: ignore[no-untyped-def]
     )  # fmt: skip
     if reg[LOGGING]:
         _log(s.log, reg, s.learnt, n)
-    backjump(
-        s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level
-    )
+    backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level)
     clause = -1
     if n > 1:
         clause = add_clause(s.edges, s.arena, s.place, s.watch, reg, s.learnt, n, lbd)
@@ -230,9 +227,7 @@ def search(s, limit):  # type: ignore[no-untyped-def]
         if reg[SINCE_RESTART] >= RESTART_UNIT * luby(reg[RESTARTS] + 1):
             reg[RESTARTS] += 1
             reg[SINCE_RESTART] = 0
-            backjump(
-                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0
-            )
+            backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0)
             if reg[CONFLICTS] >= reg[REDUCE_AT]:
                 return REDUCE
             continue
