@@ -1,6 +1,6 @@
 """From a conflict to a clause: first unique implication point over premises, and its minimisation.
 
-The premises of a conflict are held in the columns NEED and AT of `edges`, one mask a pair (two premises on a pair are
+The premises of a conflict are held in the columns NEED and AT of `marks`, one mask a pair (two premises on a pair are
 one, on the common part). Going down the trail, the entry that made a premise true is replaced by the premises of its
 reason, until one premise alone is younger than the last decision. The clause denies all that are held.
 
@@ -20,13 +20,16 @@ from ninefold._kernels import kernel
 from .columns import (
     AT,
     CLAUSE_TROUBLE,
+    CURSOR,
     DEPTH,
     EDGE,
     HELD,
     LABEL,
     LITERALS,
     N_HELD,
+    N_RECENT,
     NEED,
+    RING,
     ROOT,
     SIZE,
     TROUBLE,
@@ -44,27 +47,27 @@ _LONGEST_PROOF = 60
 
 
 @kernel(_nrt=False)
-def require(edges, trail, held, reg, edge, mask, start):  # type: ignore[no-untyped-def]
+def require(edges, marks, trail, held, reg, edge, mask, start):  # type: ignore[no-untyped-def]
     """Add a premise to those held; return by how much the number of those made true from entry `start` on grew."""
-    need = edges[edge, NEED]
+    need = marks[edge, NEED]
     mask = mask & need
     if mask == need:
         return 0
     at = made_true_at(edges, trail, edge, mask)
     if at < 0:
         return 0
-    was_young = need != -1 and edges[edge, AT] >= start
-    edges[edge, NEED] = mask
-    edges[edge, AT] = at
-    if edges[edge, HELD] == 0:
-        edges[edge, HELD] = 1
+    was_young = need != -1 and marks[edge, AT] >= start
+    marks[edge, NEED] = mask
+    marks[edge, AT] = at
+    if marks[edge, HELD] == 0:
+        marks[edge, HELD] = 1
         held[reg[N_HELD]] = edge
         reg[N_HELD] += 1
     return 1 if at >= start and not was_young else 0
 
 
 @kernel(_nrt=False)
-def conflict_premises(dom, edges, reg, arena, place, converse, compose, full, out):  # type: ignore[no-untyped-def]
+def conflict_premises(dom, edges, marks, reg, arena, place, converse, compose, full, out):  # type: ignore[no-untyped-def]
     """Write the premises of the conflict noted in the registers; return their number."""
     if reg[TROUBLE] == CLAUSE_TROUBLE:
         at = place[reg[TROUBLE_A]] + LITERALS
@@ -75,19 +78,19 @@ def conflict_premises(dom, edges, reg, arena, place, converse, compose, full, ou
             n += 1
         return n
     return explain_triangle_conflict(
-        dom, edges, converse, compose, full, reg[TROUBLE_A], reg[TROUBLE_F], reg[TROUBLE_G], out
+        dom, edges, marks, converse, compose, full, reg[TROUBLE_A], reg[TROUBLE_F], reg[TROUBLE_G], out
     )
 
 
 @kernel(_nrt=False)
 def analyse(  # type: ignore[no-untyped-def]
-    dom, edges, trail, levels, reg, arena, place, converse, compose, full, activity, held, out, learnt
+    dom, edges, marks, trail, levels, reg, arena, place, converse, compose, full, activity, recent, held, out, learnt
 ):
     """Write the clause of the first unique implication point to `learnt`, that literal first; return its length.
 
     Activities of stated pairs that had a part in it are raised by ``activity[-1]``.
     """
-    n = conflict_premises(dom, edges, reg, arena, place, converse, compose, full, out)
+    n = conflict_premises(dom, edges, marks, reg, arena, place, converse, compose, full, out)
     reg[N_HELD] = 0
     # the youngest premise, nearly always of the present level, tells where the conflict belongs
     youngest = -1
@@ -95,49 +98,52 @@ def analyse(  # type: ignore[no-untyped-def]
         youngest = max(youngest, made_true_at(edges, trail, out[k, 0], out[k, 1]))
     if youngest < 0:
         return 0
-    start = levels[trail[youngest, DEPTH]]
+    start = levels[trail[youngest, DEPTH], 0]
     young = 0
     for k in range(n):
-        young += require(edges, trail, held, reg, out[k, 0], out[k, 1], start)
+        young += require(edges, marks, trail, held, reg, out[k, 0], out[k, 1], start)
     t = youngest
     while True:
         edge = trail[t, EDGE]
-        if edges[edge, NEED] != -1 and edges[edge, AT] == t:
+        if marks[edge, NEED] != -1 and marks[edge, AT] == t:
             if young == 1:
                 break
-            wanted = edges[edge, NEED]
-            edges[edge, NEED] = -1
+            wanted = marks[edge, NEED]
+            marks[edge, NEED] = -1
             young -= 1
-            n = explain(edges, trail, arena, place, converse, compose, full, t, wanted, out)
+            n = explain(edges, marks, trail, arena, place, converse, compose, full, t, wanted, out)
             for k in range(n):
-                young += require(edges, trail, held, reg, out[k, 0], out[k, 1], start)
+                young += require(edges, marks, trail, held, reg, out[k, 0], out[k, 1], start)
         t -= 1
     learnt[0, 0] = trail[t, EDGE]
-    return 1 + _rest_of_clause(edges, reg, activity, held, learnt)
+    return 1 + _rest_of_clause(marks, reg, activity, recent, held, learnt)
 
 
 @kernel(_nrt=False)
-def _rest_of_clause(edges, reg, activity, held, learnt):  # type: ignore[no-untyped-def]
+def _rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore[no-untyped-def]
     """List the pairs held, after the first; raise the activity of stated pairs, held or met on the way."""
     n = 0
     first = learnt[0, 0]
     gain = activity[activity.size - 1]
     for h in range(reg[N_HELD]):
         edge = held[h]
-        edges[edge, HELD] = 0
-        if edges[edge, LABEL] >= 0:
+        marks[edge, HELD] = 0
+        if marks[edge, LABEL] >= 0:
             activity[edge] += gain
-        if edges[edge, NEED] != -1 and edge != first:
+            if reg[RING]:
+                recent[reg[N_RECENT] % recent.size] = edge
+                reg[N_RECENT] += 1
+        if marks[edge, NEED] != -1 and edge != first:
             n += 1
             learnt[n, 0] = edge
     return n
 
 
 @kernel(_nrt=False)
-def _is_implied(edges, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack):  # type: ignore[no-untyped-def]
+def _is_implied(edges, marks, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack):  # type: ignore[no-untyped-def]
     """Tell whether the premise held on `edge` follows from the others held (or from level 0)."""
     stack[0, 0] = edge
-    stack[0, 1] = edges[edge, NEED]
+    stack[0, 1] = marks[edge, NEED]
     n_stack = 1
     looked = 0
     while n_stack > 0:
@@ -145,13 +151,13 @@ def _is_implied(edges, trail, arena, place, converse, compose, full, stamp, mark
         t = made_true_at(edges, trail, stack[n_stack, 0], stack[n_stack, 1])
         if trail[t, WHY] == -1:  # a decision
             return False
-        n = explain(edges, trail, arena, place, converse, compose, full, t, stack[n_stack, 1], out)
+        n = explain(edges, marks, trail, arena, place, converse, compose, full, t, stack[n_stack, 1], out)
         looked += n
         if looked > _LONGEST_PROOF:
             return False
         for k in range(n):
             other, mask = out[k, 0], out[k, 1]
-            if other != edge and edges[other, NEED] & edges[other, ROOT] & ~mask == 0:
+            if other != edge and marks[other, NEED] & marks[other, ROOT] & ~mask == 0:
                 continue
             at = made_true_at(edges, trail, other, mask)
             if at < 0:
@@ -166,7 +172,7 @@ def _is_implied(edges, trail, arena, place, converse, compose, full, stamp, mark
 
 @kernel(_nrt=False)
 def minimise(  # type: ignore[no-untyped-def]
-    edges, trail, arena, place, converse, compose, full, stamp, mark, n_literals, out, stack, learnt
+    edges, marks, trail, arena, place, converse, compose, full, stamp, mark, n_literals, out, stack, learnt
 ):
     """Drop premises that follow from the others, turn the rest into literals, second youngest level second.
 
@@ -183,28 +189,28 @@ def minimise(  # type: ignore[no-untyped-def]
         Literals left, the level to jump back to, and the number of levels among the literals.
     """
     for k in range(n_literals):
-        stamp[trail[edges[learnt[k, 0], AT], DEPTH]] = mark
+        stamp[trail[marks[learnt[k, 0], AT], DEPTH]] = mark
     kept = 1
     for k in range(1, n_literals):
         edge = learnt[k, 0]
-        if trail[edges[edge, AT], WHY] != -1 and _is_implied(
-            edges, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack
+        if trail[marks[edge, AT], WHY] != -1 and _is_implied(
+            edges, marks, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack
         ):
-            edges[edge, NEED] = -1
+            marks[edge, NEED] = -1
         else:
             learnt[kept, 0] = edge
             kept += 1
     level, second, lbd = 0, 1, 0
     for k in range(kept):
         edge = learnt[k, 0]
-        depth = trail[edges[edge, AT], DEPTH]
+        depth = trail[marks[edge, AT], DEPTH]
         if stamp[depth] == mark:
             stamp[depth] = mark - 1
             lbd += 1
         if k > 0 and depth > level:
             level, second = depth, k
-        learnt[k, 1] = edges[edge, ROOT] & ~edges[edge, NEED]
-        edges[edge, NEED] = -1
+        learnt[k, 1] = marks[edge, ROOT] & ~marks[edge, NEED]
+        marks[edge, NEED] = -1
     if kept > 1:
         _swap_rows(learnt, 1, second)
     return kept, level, lbd

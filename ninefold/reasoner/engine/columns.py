@@ -6,25 +6,28 @@ named here. Rows that are read together lie together, which is also what the cac
 
 from __future__ import annotations
 
-# edges (E + b + 1 rows, the last ones head the queue's buckets): one pair of entities that the engine keeps
+# edges (E + b + 1 rows, the last ones head the queue's buckets): what propagation needs of a pair that is kept
 TAIL = 0  # smaller node of the pair
 HEAD = 1  # larger node
 LAST = 2  # last trail entry that changed the pair, or -1
 AHEAD = 3  # next pair in the queue's bucket
 BEHIND = 4  # previous pair in the queue's bucket
 BUCKET = 5  # size under which the pair is queued, or 0
-NEED = 6  # mask the conflict under analysis needs of the pair (all ones: nothing)
-AT = 7  # trail entry that made NEED true
-ROOT = 8  # relation at level 0
-WATCH = 9  # first watch node of clauses that watch the pair, or -1
-LABEL = 10  # stated relation, or -1 for a pair that is only derived
-HELD = 11  # 1 while the pair is in the list of premises
-EDGE_COLUMNS = 12
+WATCH = 6  # first watch node of clauses that watch the pair, or -1
+EDGE_COLUMNS = 8  # 32 bytes
+
+# marks (E rows): what learning and splitting need of a pair
+NEED = 0  # mask the conflict under analysis needs of the pair (all ones: nothing)
+AT = 1  # trail entry that made NEED true
+HELD = 2  # 1 while the pair is in the list of premises
+ROOT = 3  # relation at level 0
+LABEL = 4  # stated relation, or -1 for a pair that is only derived
+MARK_COLUMNS = 5
 
 # nodes (n + 1 rows)
 FIRST = 0  # first edge whose TAIL is this node
-BUSY = 1  # number of partners with a relation that is not universal (chordal back end)
-ROOM = 2  # where those partners start in `active`
+ROOM = 1  # where the node's partners start in `active`
+BUSY = 2  # number of them
 NODE_COLUMNS = 3
 
 # trail: one narrowing of one pair
@@ -70,16 +73,18 @@ TROUBLE_G = 14
 TICKS = 15  # elementary steps done
 N_HELD = 16
 KEEP = 17  # 1 when narrowings are written to the trail
-CORE = 18  # first node of the complete part of the graph
+CORE = 18  # first node of the complete part of the graph, which has bit-planes
 N_EDGES = 19
 N_NODES = 20
 FULL = 21  # mask of the universal relation
 N_BASES = 22
-DENSE = 23  # 1 for bit-planes, 0 for lists of partners
+CURSOR = 23  # every stated pair before this place is settled
 LOGGING = 24
 NARROWED = 25  # narrowings so far
 CHECKED = 26  # NARROWED when every pair was queued for the last check, or -1
-N_REGISTERS = 28
+N_RECENT = 27  # pairs written to the ring of recent ones
+RING = 28  # 1 when `recent` is a ring, 0 when it lists all stated pairs
+N_REGISTERS = 29
 
 NO_TROUBLE = 0
 TRIANGLE_TROUBLE = 1

@@ -14,27 +14,43 @@ from __future__ import annotations
 
 from ninefold._kernels import kernel
 
-from .columns import LABEL
+from .columns import CURSOR, LABEL, N_RECENT, RING
 
-__all__ = ["decay", "luby", "next_split"]
+__all__ = ["decay", "is_settled", "luby", "next_split"]
 
 _DECAY = 0.98
 _LARGEST = 1e100
 
 
+@kernel(_nrt=False, forceinline=True)
+def is_settled(dom, marks, hull, edge):  # type: ignore[no-untyped-def]
+    """Tell whether closure decides what is left of a stated pair."""
+    return hull[dom[2 * edge]] & ~marks[edge, LABEL] == 0
+
+
 @kernel(_nrt=False)
-def next_split(dom, edges, stated, activity, hull, size):  # type: ignore[no-untyped-def]
-    """Return the unsettled stated pair with the highest activity over size, or -1 when all are settled."""
+def next_split(dom, marks, stated, recent, activity, reg, hull, size):  # type: ignore[no-untyped-def]
+    """Return an unsettled stated pair, or -1 when all are settled.
+
+    It is the one with the highest activity over the root of its size among `recent`, which in a small network are all
+    stated pairs and in a large one those of the last conflicts; else the first of `stated` from the register CURSOR on.
+    """
     best = -1
     highest = -1.0
-    for at in range(stated.size):
-        edge = stated[at]
-        relation = dom[2 * edge]
-        if hull[relation] & ~edges[edge, LABEL] != 0:
-            score = activity[edge] / size[relation] ** 0.5
+    for at in range(min(reg[N_RECENT], recent.size)):
+        edge = recent[at]
+        if not is_settled(dom, marks, hull, edge):
+            score = activity[edge] / size[dom[2 * edge]] ** 0.5
             if score > highest:
                 best, highest = edge, score
-    return best
+    if best >= 0 or reg[RING] == 0:
+        return best
+    while reg[CURSOR] < stated.size:
+        edge = stated[reg[CURSOR]]
+        if not is_settled(dom, marks, hull, edge):
+            return edge
+        reg[CURSOR] += 1
+    return -1
 
 
 @kernel(_nrt=False)

@@ -82,8 +82,8 @@ class Engine:
         status = self._run(close, deadline)
         if status is None:
             return None
-        edges, reg = self.state.edges, self.state.reg
-        edges[: self.frame.n_edges, c.ROOT] = self.state.dom[::2]
+        marks, reg = self.state.marks, self.state.reg
+        marks[:, c.ROOT] = self.state.dom[::2]
         reg[c.KEEP] = 1
         return bool(status == c.FIXPOINT)
 

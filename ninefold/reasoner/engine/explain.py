@@ -21,12 +21,12 @@ __all__ = ["explain", "explain_triangle_conflict", "made_true_at", "relation_bef
 
 
 @kernel(_nrt=False)
-def relation_before(edges, trail, converse, arc, t):  # type: ignore[no-untyped-def]
+def relation_before(edges, marks, trail, converse, arc, t):  # type: ignore[no-untyped-def]
     """Return the relation that `arc` had just before trail entry `t`."""
     at = edges[arc >> 1, LAST]
     while at >= t:
         at = trail[at, PREV]
-    mask = trail[at, NEW] if at >= 0 else edges[arc >> 1, ROOT]
+    mask = trail[at, NEW] if at >= 0 else marks[arc >> 1, ROOT]
     return converse[mask] if arc & 1 else mask
 
 
@@ -49,12 +49,12 @@ def _last_change(edges, trail, arc, t):  # type: ignore[no-untyped-def]
 
 
 @kernel(_nrt=False)
-def _put(edges, converse, out, n, arc, mask):  # type: ignore[no-untyped-def]
+def _put(marks, converse, out, n, arc, mask):  # type: ignore[no-untyped-def]
     """Append the premise that `arc` lies in `mask`, on the pair's own arc, unless it is free; return the new count."""
     edge = arc >> 1
     if arc & 1:
         mask = converse[mask]
-    if edges[edge, ROOT] & ~mask == 0:
+    if marks[edge, ROOT] & ~mask == 0:
         return n
     out[n, 0] = edge
     out[n, 1] = mask
@@ -62,7 +62,7 @@ def _put(edges, converse, out, n, arc, mask):  # type: ignore[no-untyped-def]
 
 
 @kernel(_nrt=False)
-def weaken_pair(edges, converse, compose, full, f, g, first, second, swap, bad):  # type: ignore[no-untyped-def]
+def weaken_pair(converse, compose, full, first, second, swap, bad):  # type: ignore[no-untyped-def]
     """Return the largest relations of arcs f and g, one after the other, whose composition avoids `bad`.
 
     Parameters
@@ -82,25 +82,25 @@ def weaken_pair(edges, converse, compose, full, f, g, first, second, swap, bad):
 
 
 @kernel(_nrt=False)
-def explain(edges, trail, arena, place, converse, compose, full, t, wanted, out):  # type: ignore[no-untyped-def]
+def explain(edges, marks, trail, arena, place, converse, compose, full, t, wanted, out):  # type: ignore[no-untyped-def]
     """Write premises, true before entry `t`, from which its reason makes its pair lie in `wanted`; return their number.
 
     The entry must not be a decision. `out` needs a row for each literal of a clause, and three for a triangle.
     """
     edge = trail[t, EDGE]
-    bad = edges[edge, ROOT] & ~wanted
+    bad = marks[edge, ROOT] & ~wanted
     n = 0
     f, g = trail[t, WHY], trail[t, OTHER]
     if f >= 0:
-        p = relation_before(edges, trail, converse, f, t)
-        q = relation_before(edges, trail, converse, g, t)
+        p = relation_before(edges, marks, trail, converse, f, t)
+        q = relation_before(edges, marks, trail, converse, g, t)
         must = bad
         if bad & compose_masks(compose, p, q) != 0:
             must = bad & trail[t, OLD]
         swap = _last_change(edges, trail, g, t) > _last_change(edges, trail, f, t)
-        p, q = weaken_pair(edges, converse, compose, full, f, g, p, q, swap, must)
-        n = _put(edges, converse, out, n, f, p)
-        n = _put(edges, converse, out, n, g, q)
+        p, q = weaken_pair(converse, compose, full, p, q, swap, must)
+        n = _put(marks, converse, out, n, f, p)
+        n = _put(marks, converse, out, n, g, q)
         left = bad & ~must
         if left:
             left = left & compose_masks(compose, p, q)
@@ -111,14 +111,14 @@ def explain(edges, trail, arena, place, converse, compose, full, t, wanted, out)
             if arena[k] == edge:
                 left = bad & arena[k + 1]
             else:
-                n = _put(edges, converse, out, n, 2 * arena[k], full ^ arena[k + 1])
+                n = _put(marks, converse, out, n, 2 * arena[k], full ^ arena[k + 1])
     if left:
-        n = _put(edges, converse, out, n, 2 * edge, full ^ left)
+        n = _put(marks, converse, out, n, 2 * edge, full ^ left)
     return n
 
 
 @kernel(_nrt=False)
-def explain_triangle_conflict(dom, edges, converse, compose, full, e, f, g, out):  # type: ignore[no-untyped-def]
+def explain_triangle_conflict(dom, edges, marks, converse, compose, full, e, f, g, out):  # type: ignore[no-untyped-def]
     """Write premises on arcs e, f, g with ``e`` and ``f;g`` disjoint; return their number.
 
     The pair changed last is enlarged first, in the hope that it then lies further down the trail.
@@ -128,10 +128,10 @@ def explain_triangle_conflict(dom, edges, converse, compose, full, e, f, g, out)
     le, lf, lg = edges[e >> 1, LAST], edges[f >> 1, LAST], edges[g >> 1, LAST]
     if le > lf and le > lg:
         bad = full ^ compose_masks(compose, p, q)
-        p, q = weaken_pair(edges, converse, compose, full, f, g, p, q, lg > lf, bad)
+        p, q = weaken_pair(converse, compose, full, p, q, lg > lf, bad)
     else:
-        p, q = weaken_pair(edges, converse, compose, full, f, g, p, q, lg > lf, bad)
+        p, q = weaken_pair(converse, compose, full, p, q, lg > lf, bad)
         bad = full ^ compose_masks(compose, p, q)
-    n = _put(edges, converse, out, 0, e, bad)
-    n = _put(edges, converse, out, n, f, p)
-    return _put(edges, converse, out, n, g, q)
+    n = _put(marks, converse, out, 0, e, bad)
+    n = _put(marks, converse, out, n, f, p)
+    return _put(marks, converse, out, n, g, q)

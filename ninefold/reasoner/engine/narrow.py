@@ -1,11 +1,12 @@
 """Make a relation smaller, and take that back.
 
-Everything that follows from a pair's relation is kept beside it: the relation of the converse arc, the bit-planes (dense
-back end) or the lists of partners that are not universal (chordal back end), and the trail.
+Everything that follows from a pair's relation is kept beside it: the relation of the converse arc, the bit-planes of the
+core or the lists of earlier partners, and the trail.
 
-Bit-planes: bit ``k % 64`` of ``planes[i, k // 64, b]`` says that base relation b is possible between nodes i and k.
-Lists: the rows ``nodes[i, ROOM] ...`` of `active` hold (partner, arc to it), newest last, ``nodes[i, BUSY]`` of them;
-narrowings are taken back in reverse order, so that a list is a stack.
+Bit-planes: bit ``k % 64`` of ``planes[i, k // 64, b]`` says that base relation b is possible between nodes i and k, both
+counted from the core's first. Lists: the rows ``nodes[i, ROOM] ...`` of `active` hold (partner, arc to it) for partners of
+i before i and the core whose relation is not universal, newest last, ``nodes[i, BUSY]`` of them; narrowings are taken
+back in reverse order, so that a list is a stack.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from ninefold._kernels import kernel
 
 from .columns import (
     BUSY,
-    DENSE,
+    CORE,
+    CURSOR,
     DEPTH,
     EDGE,
     FULL,
@@ -87,11 +89,11 @@ def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i
     old = dom[2 * edge]
     dom[2 * edge] = new
     dom[2 * edge + 1] = converse[new]
-    if reg[DENSE]:
-        flip_planes(planes, i, k, old ^ new)
-        flip_planes(planes, k, i, converse[old ^ new])
+    core = reg[CORE]
+    if i >= core:
+        flip_planes(planes, i - core, k - core, old ^ new)
+        flip_planes(planes, k - core, i - core, converse[old ^ new])
     elif old == reg[FULL]:
-        list_partner(active, nodes, i, k, 2 * edge)
         list_partner(active, nodes, k, i, 2 * edge + 1)
     if reg[KEEP]:
         top = reg[TOP]
@@ -115,20 +117,21 @@ def backjump(dom, edges, nodes, planes, active, trail, levels, reg, converse, n_
     clear_queue(edges, reg[N_EDGES], n_bases)
     if reg[LEVEL] <= level:
         return
-    start = levels[level + 1]
+    core = reg[CORE]
+    start = levels[level + 1, 0]
     for t in range(reg[TOP] - 1, start - 1, -1):
         edge = trail[t, EDGE]
         old, new = trail[t, OLD], trail[t, NEW]
         dom[2 * edge] = old
         dom[2 * edge + 1] = converse[old]
         i, k = edges[edge, TAIL], edges[edge, HEAD]
-        if reg[DENSE]:
-            flip_planes(planes, i, k, old ^ new)
-            flip_planes(planes, k, i, converse[old ^ new])
+        if i >= core:
+            flip_planes(planes, i - core, k - core, old ^ new)
+            flip_planes(planes, k - core, i - core, converse[old ^ new])
         elif old == reg[FULL]:
-            nodes[i, BUSY] -= 1
             nodes[k, BUSY] -= 1
         edges[edge, LAST] = trail[t, PREV]
     reg[TOP] = start
     reg[SEEN] = start
     reg[LEVEL] = level
+    reg[CURSOR] = levels[level + 1, 1]

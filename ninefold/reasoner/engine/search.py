@@ -7,6 +7,7 @@ the arrays, so stopping changes nothing in the run.
 References
 ----------
 J. P. Marques-Silva, I. Lynce and S. Malik, "Conflict-driven clause learning SAT solvers", Handbook of Satisfiability.
+A. Nadel and V. Ryvchin, "Chronological backtracking", SAT 2018 (stepping back one level where the jump would be long).
 """
 
 from __future__ import annotations
@@ -18,19 +19,23 @@ from .clauses import add_clause, visit_watches
 from .columns import (
     ARENA_FULL,
     ARENA_TOP,
-    CHECKED,
+    AT,
     CLAUSE,
     CONFLICT,
     CONFLICTS,
+    CHECKED,
     CONSISTENT,
+    CORE,
+    CURSOR,
     DECIDED,
     DECISIONS,
-    DENSE,
+    DEPTH,
     EDGE,
     FIXPOINT,
     FULL,
     HEAD,
     INCONSISTENT,
+    KEEP,
     LAST,
     LEVEL,
     LITERALS,
@@ -65,6 +70,7 @@ from .sweep import close_triangles
 __all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root", "state_labels"]
 
 RESTART_UNIT = 50
+LONGEST_JUMP = 100
 
 
 @kernel(_nrt=False)
@@ -118,11 +124,10 @@ def propagate(s, limit):  # type: ignore[no-untyped-def]
 def recheck(s):  # type: ignore[no-untyped-def]
     """Queue every pair that is not universal, unless that was done since the last narrowing; tell whether it was.
 
-    The dense back end leaves pairs out of the queue when they follow exactly from two others (see `sweep`), so a
-    fixpoint is known to be one only after a round in which nothing changed.
+    In a dense frame pairs that follow exactly from two others are not queued (see `sweep`), so a fixpoint is known to be one only after a round in which nothing changed.
     """
     reg = s.reg
-    if reg[DENSE] == 0 or reg[CHECKED] == reg[NARROWED]:
+    if reg[CORE] != 0 or reg[CHECKED] == reg[NARROWED]:
         return True
     reg[CHECKED] = reg[NARROWED]
     for edge in range(reg[N_EDGES]):
@@ -146,7 +151,7 @@ def settle_root(s):  # type: ignore[no-untyped-def]
     """Make what was derived at level 0 the new root, and forget its trail."""
     for t in range(s.reg[TOP]):
         edge = s.trail[t, EDGE]
-        s.edges[edge, ROOT] = s.dom[2 * edge]
+        s.marks[edge, ROOT] = s.dom[2 * edge]
         s.edges[edge, LAST] = -1
     s.reg[TOP] = 0
     s.reg[SEEN] = 0
@@ -157,19 +162,25 @@ def learn(s):  # type: ignore[no-untyped-def]
     """Learn from the conflict in the registers and jump back; return False when it refutes the network."""
     reg = s.reg
     n = analyse(
-        s.dom, s.edges, s.trail, s.levels, reg, s.arena, s.place, s.converse, s.compose, reg[FULL],
-        s.activity, s.held, s.out, s.learnt,
+        s.dom, s.edges, s.marks, s.trail, s.levels, reg, s.arena, s.place, s.converse, s.compose, reg[FULL],
+        s.activity, s.recent, s.held, s.out, s.learnt,
     )  # fmt: skip
     reg[TROUBLE] = NO_TROUBLE
     if n == 0:
         return False
+    depth = s.trail[s.marks[s.learnt[0, 0], AT], DEPTH]
     n, level, lbd = minimise(
-        s.edges, s.trail, s.arena, s.place, s.converse, s.compose, reg[FULL], s.stamp, 2 * reg[CONFLICTS] + 2,
+        s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, reg[FULL], s.stamp, 2 * reg[CONFLICTS] + 2,
         n, s.out, s.stack, s.learnt,
     )  # fmt: skip
     if reg[LOGGING]:
         _log(s.log, reg, s.learnt, n)
-    backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level)
+    # far down a network that gives way easily, what lies between is worth keeping: step back one level only
+    if depth - level > LONGEST_JUMP:
+        level = depth - 1
+    backjump(
+        s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level
+    )
     clause = -1
     if n > 1:
         clause = add_clause(s.edges, s.arena, s.place, s.watch, reg, s.learnt, n, lbd)
@@ -190,7 +201,8 @@ def split(s, edge):  # type: ignore[no-untyped-def]
     reg = s.reg
     reg[LEVEL] += 1
     reg[DECISIONS] += 1
-    s.levels[reg[LEVEL]] = reg[TOP]
+    s.levels[reg[LEVEL], 0] = reg[TOP]
+    s.levels[reg[LEVEL], 1] = reg[CURSOR]
     narrow(
         s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, reg, s.converse, s.size,
         2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.split[s.dom[2 * edge]], DECIDED, 0, True,
@@ -227,11 +239,13 @@ def search(s, limit):  # type: ignore[no-untyped-def]
         if reg[SINCE_RESTART] >= RESTART_UNIT * luby(reg[RESTARTS] + 1):
             reg[RESTARTS] += 1
             reg[SINCE_RESTART] = 0
-            backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0)
+            backjump(
+                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0
+            )
             if reg[CONFLICTS] >= reg[REDUCE_AT]:
                 return REDUCE
             continue
-        edge = next_split(s.dom, s.edges, s.stated, s.activity, s.hull, s.size)
+        edge = next_split(s.dom, s.marks, s.stated, s.recent, s.activity, reg, s.hull, s.size)
         if edge < 0:
             if recheck(s):
                 return CONSISTENT

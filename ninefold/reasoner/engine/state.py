@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["State", "new_state"]
 
+_RING = 4096
+"""Stated pairs up to which each split looks at all of them."""
+
 
 class State(NamedTuple):
     """Everything a kernel of the engine reads or writes. Columns and registers are named in `columns`."""
@@ -25,18 +28,20 @@ class State(NamedTuple):
     """(2E,) relation of every arc."""
     edges: NDArray[np.int32]
     """(E + b + 1, EDGE_COLUMNS); the last rows head the queue's buckets."""
+    marks: NDArray[np.int32]
+    """(E, MARK_COLUMNS)."""
     nodes: NDArray[np.int32]
     """(n + 1, NODE_COLUMNS)."""
     upper: NDArray[np.int32]
     """Later neighbours of nodes before the core."""
     planes: NDArray[np.uint64]
-    """(n, words, w) bit-planes, w the next multiple of 8 above b; of no size for the chordal back end."""
+    """(n - core, words, w) bit-planes of the core, w the next multiple of 8 above b."""
     active: NDArray[np.int32]
-    """(2E, 2) partners that are not universal; of no size for the dense back end."""
+    """(edges before the core, 2) partners of each node before it and the core, with the arcs to them."""
     trail: NDArray[np.int32]
     """(capacity, TRAIL_COLUMNS)."""
     levels: NDArray[np.int32]
-    """First trail entry of every level."""
+    """(levels, 2) first trail entry of every level, and where the register CURSOR was."""
     reg: NDArray[np.int64]
     """Registers."""
     arena: NDArray[np.int32]
@@ -48,7 +53,9 @@ class State(NamedTuple):
     activity: NDArray[np.float64]
     """(E + 1,); the last one is the present gain."""
     stated: NDArray[np.int32]
-    """Pairs with a label that may still need a split."""
+    """Pairs with a label that is not tractable, the smallest first."""
+    recent: NDArray[np.int32]
+    """The same, or a ring of those that were in the last conflicts."""
     held: NDArray[np.int32]
     """(E,) scratch: pairs with a premise."""
     learnt: NDArray[np.int32]
@@ -90,46 +97,52 @@ def new_state(
     b, n, n_edges = tables.n_bases, frame.n, frame.n_edges
     edges = np.zeros((n_edges + b + 1, c.EDGE_COLUMNS), dtype=np.int32)
     edges[:n_edges, c.TAIL], edges[:n_edges, c.HEAD] = frame.ends()
-    for column in (c.LAST, c.NEED, c.WATCH, c.LABEL):
-        edges[:, column] = -1
+    edges[:, c.LAST] = edges[:, c.WATCH] = -1
+    marks = np.zeros((n_edges, c.MARK_COLUMNS), dtype=np.int32)
+    marks[:, c.NEED] = marks[:, c.LABEL] = -1
     heads = np.arange(n_edges, n_edges + b + 1)
     edges[n_edges:, c.AHEAD] = edges[n_edges:, c.BEHIND] = heads
 
     nodes = np.zeros((n + 1, c.NODE_COLUMNS), dtype=np.int32)
     nodes[:, c.FIRST] = frame.first
-    if frame.dense:
-        planes, active = _open_planes(tables, n), np.empty((0, 2), dtype=np.int32)
-    else:
-        planes, active = np.empty((0, 0, 8), dtype=np.uint64), np.empty((2 * n_edges, 2), dtype=np.int32)
-        degree = np.bincount(edges[:n_edges, c.TAIL], minlength=n) + np.bincount(edges[:n_edges, c.HEAD], minlength=n)
-        np.cumsum(degree, out=nodes[1:, c.ROOM])
+    np.cumsum(np.bincount(frame.upper, minlength=n), out=nodes[1:, c.ROOM])
 
     reg = np.zeros(c.N_REGISTERS, dtype=np.int64)
     reg[c.FULL], reg[c.N_BASES], reg[c.N_EDGES], reg[c.N_NODES] = tables.full, b, n_edges, n
-    reg[c.CORE], reg[c.DENSE], reg[c.LOGGING] = frame.core, frame.dense, logging
+    reg[c.CORE], reg[c.LOGGING], reg[c.CHECKED] = frame.core, logging, -1
 
     pair = arcs >> 1
     label = np.where(arcs & 1, tables.converse[masks], masks)
-    edges[pair, c.LABEL] = label
+    marks[pair, c.LABEL] = label
     activity = np.zeros(n_edges + 1)
     activity[pair] = 1e-3 * rng.random(len(pair))
     activity[n_edges] = 1.0
 
+    hard = np.flatnonzero(tables.hull[label] != label)
+    hard = hard[np.lexsort((-activity[pair[hard]], tables.size[label[hard]]))]
+    stated = pair[hard].astype(np.int32)
+    recent = stated.copy()
+    reg[c.N_RECENT] = stated.size
+    if stated.size > _RING:
+        recent = np.empty(_RING, dtype=np.int32)
+        reg[c.N_RECENT], reg[c.RING] = 0, 1
     return State(
         dom=np.full(2 * n_edges, tables.full, dtype=np.int16),
         edges=edges,
+        marks=marks,
         nodes=nodes,
         upper=frame.upper,
-        planes=planes,
-        active=active,
+        planes=_open_planes(tables, n - frame.core),
+        active=np.empty((frame.upper.size, 2), dtype=np.int32),
         trail=np.empty((4 * n + 1024, c.TRAIL_COLUMNS), dtype=np.int32),
-        levels=np.zeros(len(arcs) * b + 2, dtype=np.int32),
+        levels=np.zeros((len(arcs) * b + 2, 2), dtype=np.int32),
         reg=reg,
         arena=np.empty(1 << 16, dtype=np.int32),
         place=np.empty(1 << 10, dtype=np.int32),
         watch=np.empty((2 << 10, c.WATCH_COLUMNS), dtype=np.int32),
         activity=activity,
-        stated=pair[tables.hull[label] != label].astype(np.int32),
+        stated=stated,
+        recent=recent,
         held=np.empty(n_edges, dtype=np.int32),
         learnt=np.empty((n_edges + 3, 2), dtype=np.int32),
         out=np.empty((n_edges + 3, 2), dtype=np.int32),

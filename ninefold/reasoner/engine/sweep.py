@@ -3,15 +3,16 @@
 When the relation R of nodes i and j has become smaller, every third node k may lose relations to i, which have to lie in
 ``R ; (j k)``, and to j, which have to lie in ``R~ ; (i k)``.
 
-Dense back end: the partners are swept 64 at a time over bit-planes. Base relation c stays possible between i and k when
-(j k) can be one of the b with ``c in R;b``; the union of the planes of those b, for 64 k at once, is compared with the
-plane of c. Chordal back end: only a k whose relation to j is not universal can matter (``R ; universal`` is universal
-in the calculi that use this back end), and such partners are listed.
+Inside the core, which is complete, partners are swept 64 at a time over bit-planes. Base relation c stays possible
+between i and k when (j k) can be one of the b with ``c in R;b``; the union of the planes of those b, for 64 k at once, is
+compared with the plane of c. A dense frame is all core. Triangles with a node before the core are closed one by one: from
+their first node over its later neighbours, which form a clique, and from the other two over the listed partners before
+them, those that are not universal (``R ; universal`` is universal in every calculus that gets a chordal frame).
 
 Where the new relation of (i, k) is all of ``(i j);(j k)``, closing triangles over (i, k) would find, composition being
-associative, what the triangles over (i, j) and (j, k) find in two steps; the dense back end does not queue such a pair.
-That halves the work. As reasons can run in circles, a round over all pairs confirms a fixpoint before it counts
-(`search.recheck`). In a chordal graph the two steps may pass through a pair that is not kept, so there it does not hold.
+associative, what the triangles over (i, j) and (j, k) find in two steps, so in a dense frame the pair is not queued. That
+halves the work. As such reasons can run in circles, a round over all pairs confirms a fixpoint before it counts
+(`search.recheck`). In a chordal frame the two steps may pass through a pair that is not kept.
 
 References
 ----------
@@ -27,7 +28,7 @@ from ninefold._kernels import kernel
 from .columns import (
     BUSY,
     CORE,
-    DENSE,
+    FIRST,
     FULL,
     HEAD,
     ROOM,
@@ -91,55 +92,86 @@ def losing_partners(planes, gates, relation, target, source, word):  # type: ign
 
 
 @kernel(_nrt=False)
-def _sweep_planes(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, arc, i, j):  # type: ignore[no-untyped-def]
-    """Narrow every (i, k) by the triangle over `arc` = (i, j); return False at an empty relation."""
+def _sweep_planes(  # type: ignore[no-untyped-def]
+    dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, arc, i, j
+):
+    """Narrow every (i, k) in the core by the triangle over `arc` = (i, j); return False at an empty relation."""
     relation = dom[arc]
+    core = reg[CORE]
     for word in range(planes.shape[1]):
-        losing = losing_partners(planes, gates, relation, i, j, word)
+        losing = losing_partners(planes, gates, relation, i - core, j - core, word)
         while losing != 0:
-            k = word * WORD + lowest_bit(losing)
+            k = core + word * WORD + lowest_bit(losing)
             losing = losing & (losing - _ONE)
-            target = arc_between(nodes, upper, 0, i, k)
-            source = arc_between(nodes, upper, 0, j, k)
+            target = arc_between(nodes, upper, core, i, k)
+            source = arc_between(nodes, upper, core, j, k)
             allowed = compose_masks(compose, relation, dom[source])
             new = dom[target] & allowed
             if new == 0:
                 _report(reg, target, arc, source)
                 return False
-            exact = new == allowed
+            queued = new != allowed or core != 0
             narrow(
-                dom, edges, nodes, planes, active, trail, reg, converse, size,
-                target, i, k, new, arc, source, not exact,
-            )  # fmt: skip
+                dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, queued
+            )
     reg[TICKS] += planes.shape[1]
     return True
 
 
 @kernel(_nrt=False)
-def _sweep_partners(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):  # type: ignore[no-untyped-def]
-    """Narrow every kept (i, k) with (j, k) not universal; return False at an empty relation."""
-    relation = dom[arc]
+def _apply(  # type: ignore[no-untyped-def]
+    dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, target, i, k, arc, source
+):
+    """Narrow `target` = (i, k) to ``arc ; source``; return False at an empty relation."""
+    allowed = compose_masks(compose, dom[arc], dom[source])
+    if allowed == full:
+        return True
+    old = dom[target]
+    new = old & allowed
+    if new == old:
+        return True
+    if new == 0:
+        _report(reg, target, arc, source)
+        return False
+    narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, True)
+    return True
+
+
+@kernel(_nrt=False)
+def _visit_later(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):  # type: ignore[no-untyped-def]
+    """Close the triangles of i, before the core, and j with the other later neighbours of i."""
+    core, full = reg[CORE], reg[FULL]
+    for at in range(nodes[i, FIRST], nodes[i + 1, FIRST]):
+        k = upper[at]
+        if k == j:
+            continue
+        first, second = 2 * at, arc_between(nodes, upper, core, j, k)
+        if dom[second] != full and not _apply(
+            dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, first, i, k, arc, second
+        ):
+            return False
+        if dom[first] != full and not _apply(
+            dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, second, j, k, arc + 1, first
+        ):
+            return False
+    reg[TICKS] += 2 * (nodes[i + 1, FIRST] - nodes[i, FIRST])
+    return True
+
+
+@kernel(_nrt=False)
+def _visit_earlier(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):  # type: ignore[no-untyped-def]
+    """Narrow every kept (i, k) with k before i and j, and (j, k) not universal; return False at an empty relation."""
     core, full = reg[CORE], reg[FULL]
     start = nodes[j, ROOM]
     for at in range(start, start + nodes[j, BUSY]):
-        source = active[at, 1]
-        allowed = compose_masks(compose, relation, dom[source])
-        if allowed == full:
-            continue
         k = active[at, 0]
-        if k == i:
-            continue
-        target = arc_between(nodes, upper, core, i, k)
-        if target < 0:
-            continue
-        old = dom[target]
-        new = old & allowed
-        if new == old:
-            continue
-        if new == 0:
-            _report(reg, target, arc, source)
-            return False
-        narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, True)
+        if k < i and compose_masks(compose, dom[arc], dom[active[at, 1]]) != full:
+            target = arc_between(nodes, upper, core, i, k)
+            if target >= 0 and not _apply(
+                dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full,
+                target, i, k, arc, active[at, 1],
+            ):  # fmt: skip
+                return False
     reg[TICKS] += nodes[j, BUSY]
     return True
 
@@ -150,15 +182,25 @@ def close_triangles(dom, edges, nodes, upper, planes, active, trail, reg, conver
     i, j = edges[edge, TAIL], edges[edge, HEAD]
     arc = 2 * edge
     reg[TICKS] += 8
-    if reg[DENSE]:
-        return _sweep_planes(
-            dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, arc, i, j
-        ) and _sweep_planes(
-            dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, arc + 1, j, i
-        )
-    return _sweep_partners(
+    if i < reg[CORE]:
+        if not _visit_later(
+            dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j
+        ):
+            return False
+    else:
+        for back in range(2):
+            if not _sweep_planes(
+                dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates,
+                arc + back, edges[edge, TAIL + back], edges[edge, HEAD - back],
+            ):  # fmt: skip
+                return False
+    if nodes[j, BUSY] and not _visit_earlier(
         dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j
-    ) and _sweep_partners(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc + 1, j, i)
+    ):
+        return False
+    return nodes[i, BUSY] == 0 or _visit_earlier(
+        dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc + 1, j, i
+    )
 
 
 @kernel(_nrt=False, forceinline=True)
