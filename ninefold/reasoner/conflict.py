@@ -28,7 +28,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .check import Inconsistent, check
+from .check import Consistent, Inconsistent, check
 from .closure import RecordedClosure
 from .refutation import refute
 
@@ -139,6 +139,7 @@ class Shrinker:
         self._seed = seed
         self._deadline = deadline
         self._soft_only = soft_only
+        self._late = False
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
         """Return a conflict among statements `indices`, and whether it is minimal; None if they are consistent.
@@ -177,7 +178,7 @@ class Shrinker:
             rest = [k for k in used if k not in block]
             smaller = self._refuted(rest)
             if smaller is None:
-                if self._late():
+                if self._late:
                     return used, False
                 necessary |= block
             else:
@@ -187,17 +188,16 @@ class Shrinker:
 
     def _refuted(self, rest: list[int]) -> list[int] | None:
         """Return the part of `rest` that refutes it, or None if it is consistent (or time is up)."""
-        used = self._used(rest)
-        if used is not None:
-            return used
         left = None if self._deadline is None else self._deadline - time.perf_counter()
         if left is not None and left <= 0:
+            self._late = True
             return None
+        # most often the rest is consistent, which check sees faster on few statements than a closure over all pairs
         verdict = check(part_of(self._net, rest), budget=left, seed=self._seed)
-        return self._used_by_cases(rest) if isinstance(verdict, Inconsistent) else None
-
-    def _late(self) -> bool:
-        return self._deadline is not None and time.perf_counter() >= self._deadline
+        if not isinstance(verdict, Inconsistent):
+            self._late = not isinstance(verdict, Consistent)
+            return None
+        return self._used(rest) or self._used_by_cases(rest)
 
     def _used(self, kept: Sequence[int]) -> list[int] | None:
         """Return the statements closure needs to refute `kept`, fewer at every round; None if it does not."""
