@@ -1,0 +1,309 @@
+"""Commands on relation networks: ``check``, ``infer``, ``ask``, ``repair``, ``scenarios`` and ``compose``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ._options import AsJson, Force
+from ._output import note, notes, print_json, progress
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ninefold.reasoner.network import Network, Statement
+    from ninefold.reasoner.scenario import Scenario
+
+__all__ = ["ask", "check", "compose", "infer", "repair", "scenarios"]
+
+YES, NO, SPENT = 0, 1, 3
+
+LISTED = 1000
+"""Entities up to which ``check --json`` writes the scenario out; it holds every pair."""
+
+NetPath = Annotated[
+    Path, typer.Argument(metavar="NET", help="A network: .csp, .csv or .json.", show_default=False)
+]  # fmt: skip
+CalculusName = Annotated[
+    str | None,
+    typer.Option("--calculus", help="rcc8, rcc5, point, allen or a .spec file, where NET does not say.", show_default=False),
+]
+Budget = Annotated[float | None, typer.Option(min=0.001, help="Seconds after which to give up.", show_default=False)]
+Seed = Annotated[int, typer.Option(min=0, help="Of the search; the same seed gives the same run.")]
+
+
+def check(
+    net: NetPath,
+    *,
+    calculus: CalculusName = None,
+    budget: Budget = None,
+    method: Annotated[str, typer.Option(help="auto, or an encoding and solver such as support:cadical195.")] = "auto",
+    seed: Seed = 0,
+    no_conflict: Annotated[bool, typer.Option("--no-conflict", help="Only decide; seek no minimal conflict.")] = False,
+    draw: Annotated[
+        Path | None, typer.Option(metavar="FILE.svg", help="Draw regions that satisfy it.", show_default=False)
+    ] = None,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> int:
+    """Decide whether a network is consistent, and show a scenario or a minimal conflict."""
+    import time
+
+    from ninefold.errors import BadInput
+    from ninefold.io.files import refuse_existing
+    from ninefold.reasoner.check import Consistent, Inconsistent
+    from ninefold.reasoner.check import check as decide
+
+    if draw is not None:
+        if draw.suffix.lower() != ".svg":
+            raise BadInput(f"{draw}: pictures are SVG; name a file that ends in .svg")
+        refuse_existing(draw, force=force)
+    network = _read(net, calculus)
+    begin = time.perf_counter()
+    with progress(f"deciding {net}"):
+        verdict = decide(network, budget=budget, method=method, seed=seed)
+    seconds = time.perf_counter() - begin
+    report: dict[str, Any] = {"verdict": "unknown", "seconds": round(seconds, 6), "scenario": None, "conflict": None}
+    text = f"unknown: {budget} s were not enough"
+    code = SPENT
+    if isinstance(verdict, Consistent):
+        report["verdict"], code, text = "consistent", YES, f"consistent ({_counts(network)}, {seconds:.3g} s)"
+        if as_json and network.n_entities <= LISTED:
+            report["scenario"] = _triples(verdict.scenario)
+        elif as_json:
+            note(f"the scenario of {network.n_entities:,} entities is not written out; `scenarios` gives it")
+        if draw is not None:
+            _draw(verdict.scenario, draw, title=net.stem, force=force)
+            report["drawing"] = str(draw)
+    elif isinstance(verdict, Inconsistent):
+        report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
+        if not no_conflict:
+            left = None if budget is None else max(budget - seconds, 0.0)
+            why = _conflict(network, seed, left)
+            report["conflict"] = why[0]
+            text = f"{text}\n{why[1]}"
+    if draw is not None and code != YES:
+        note("nothing was drawn: only a consistent network has a drawing")
+    _print(report, text, as_json=as_json)
+    return code
+
+
+def infer(
+    net: NetPath,
+    a: Annotated[str, typer.Argument(metavar="A", help="An entity.", show_default=False)],
+    b: Annotated[str, typer.Argument(metavar="B", help="Another.", show_default=False)],
+    *,
+    calculus: CalculusName = None,
+    why: Annotated[bool, typer.Option("--why", help="Explain every relation that is excluded.")] = False,
+    budget: Budget = None,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> int:
+    """Tell which relations are feasible between two entities."""
+    from ninefold.reasoner.conflict import Conflict
+    from ninefold.reasoner.explain import explain
+    from ninefold.reasoner.infer import infer as inference
+
+    network = _read(net, calculus)
+    with progress(f"inferring from {net}"):
+        found = inference(network, a, b, seed=seed, budget=budget)
+    names = network.calculus.names
+    report: dict[str, Any] = {"a": found.a, "b": found.b, "relations": list(found.relations)}
+    lines = [f"{found.a}  {' '.join(found.relations) or 'nothing is possible: the network is inconsistent'}  {found.b}"]
+    if found.unknown:
+        report["unknown"] = list(names(found.unknown))
+        lines.append(f"not decided in {budget} s: {' '.join(report['unknown'])}")
+    if why:
+        report["excluded"] = {}
+        for relation in names(network.calculus.universal & ~found.mask & ~found.unknown):
+            reason = found.reason(relation)
+            if isinstance(reason, Conflict):
+                report["excluded"][relation] = _stated(network, reason)
+                lines += [f"not {relation}:", *(f"  {line}" for line in explain(reason).lines)]
+    _print(report, "\n".join(lines), as_json=as_json)
+    if found.unknown:
+        return SPENT
+    return YES if found.consistent else NO
+
+
+def ask(
+    net: NetPath,
+    formula: Annotated[
+        str, typer.Argument(metavar="FORMULA", help="Such as 'inside(a, b) & ~meet(a, \"block 12\")'.", show_default=False)
+    ],
+    *,
+    calculus: CalculusName = None,
+    budget: Budget = None,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> int:
+    """Tell whether a Boolean formula is entailed, possible or impossible, with evidence."""
+    from ninefold.reasoner.ask import ask as question
+
+    network = _read(net, calculus)
+    with progress(f"asking {net}"):
+        answer = question(network, formula, seed=seed, budget=budget)
+        forced = answer.statements
+    evidence = {
+        "satisfied": None if answer.satisfied is None else _triples(answer.satisfied),
+        "falsified": None if answer.falsified is None else _triples(answer.falsified),
+        "statements": _stated(network, forced),
+    }
+    lines: list[str] = [answer.answer]
+    if forced:
+        lines += ["forced by:", *(f"  {_spoken(network, s)}" for s in forced)]
+    if answer.answer == "possible":
+        for value, scenario in (("true", answer.satisfied), ("false", answer.falsified)):
+            lines += [
+                f"{value} where:",
+                *(f"  {a} {r} {b}" for a, b, r in _mentioned(scenario, answer.formula.atoms.values())),
+            ]
+    _print({"answer": answer.answer, "evidence": evidence}, "\n".join(lines), as_json=as_json)
+    return {"impossible": NO, "unknown": SPENT}.get(answer.answer, YES)
+
+
+def repair(
+    net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
+) -> int:
+    """Find the cheapest statements to drop so that the rest is consistent."""
+    from ninefold.reasoner.repair import repair as cheapest
+
+    network = _read(net, calculus)
+    with progress(f"repairing {net}"):
+        found = cheapest(network, seed=seed, budget=budget)
+    if found is None:
+        _print({"drop": None, "cost": None, "optimal": False}, f"unknown: {budget} s were not enough", as_json=as_json)
+        return SPENT
+    if found.conflict is not None:
+        report: dict[str, Any] = {"drop": None, "cost": None, "optimal": True, "conflict": _stated(network, found.conflict)}
+        lines = ["there is no repair: these hard statements contradict each other"]
+        _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
+        return NO
+    report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
+    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    if not found.optimal:
+        lines[0] += " (perhaps not the least: the budget is spent)"
+    lines += [f"  {_spoken(network, s)}" for s in found.drop]
+    _print(report, "\n".join(lines) if found.drop else "consistent: nothing has to be dropped", as_json=as_json)
+    return YES if found.optimal else SPENT
+
+
+def scenarios(
+    net: NetPath,
+    *,
+    calculus: CalculusName = None,
+    limit: Annotated[int, typer.Option(min=1, max=1_000_000, help="Most scenarios to find.")] = 100,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> int:
+    """List the scenarios of a network, and say how many there are."""
+    from itertools import islice
+
+    from ninefold.reasoner.scenarios import scenarios as every
+
+    network = _read(net, calculus)
+    with progress(f"listing the scenarios of {net}"):
+        found = list(islice(every(network, seed=seed), limit + 1))
+    exact, found = len(found) <= limit, found[:limit]
+    if as_json:
+        print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})
+    else:
+        print(f"{'' if exact else 'more than '}{len(found)} scenario{'' if len(found) == 1 else 's'}")
+        for number, scenario in enumerate(found, start=1):
+            print(f"{number}: " + "; ".join(f"{a} {r} {b}" for a, b, r in scenario.triples()))
+    return YES if found else NO
+
+
+def compose(
+    r: Annotated[str, typer.Argument(metavar="R", help="Relations, such as 'inside|coveredBy'.", show_default=False)],
+    s: Annotated[str, typer.Argument(metavar="S", help="Relations.", show_default=False)],
+    *,
+    calculus: CalculusName = None,
+    by_sat: Annotated[bool, typer.Option("--sat", help="Compute it from the model instead of looking it up.")] = False,
+    as_json: AsJson = False,
+) -> int:
+    """Compose relations: what x R y and y S z leave for x and z."""
+    found = _calculus(calculus or "rcc8")
+    first, second = found.relation(r), found.relation(s)
+    if by_sat:
+        from ninefold.encodings import compose_by_sat
+
+        mask = compose_by_sat(found, first, second)
+    else:
+        mask = found.compose(first, second)
+    names = list(found.names(mask))
+    _print({"relations": names}, " ".join(names), as_json=as_json)
+    return YES
+
+
+def _read(net: Path, calculus: str | None) -> "Network":
+    from ninefold.io.networks import load_network
+
+    with progress(f"reading {net}"):
+        found = load_network(net, calculus=calculus)
+    notes(found.notes)
+    return found.network
+
+
+def _calculus(name: str) -> Any:
+    from ninefold.encodings import Calculus, calculus_named
+
+    return Calculus.from_file(name) if name.endswith(".spec") else calculus_named(name)
+
+
+def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
+    if as_json:
+        print_json(report)
+    else:
+        print(text)
+
+
+def _counts(network: "Network") -> str:
+    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+
+
+def _triples(scenario: "Scenario") -> list[list[str]]:
+    return [list(triple) for triple in scenario.triples()]
+
+
+def _stated(network: "Network", statements: "Iterable[Statement]") -> list[list[Any]]:
+    return [[s.a, s.b, list(network.calculus.names(s.mask))] for s in statements]
+
+
+def _spoken(network: "Network", s: "Statement") -> str:
+    from ninefold.reasoner.words import phrase
+
+    label = f" ({s.label})" if s.label else ""
+    return f"{phrase(network.calculus, s.a, s.mask, s.b)}{label}"
+
+
+def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tuple[str, str, str]]:
+    """Return the relations of the pairs that a formula speaks of."""
+    if scenario is None:
+        return []
+    names = scenario.entities
+    pairs = sorted({(atom.i, atom.j) for atom in atoms})
+    return [(names[i], names[j], scenario.relation(names[i], names[j])) for i, j in pairs]
+
+
+def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list[list[Any]], str]:
+    """Return the statements of a conflict, and it and its derivation in words."""
+    from ninefold.reasoner.conflict import conflict
+    from ninefold.reasoner.explain import explain
+
+    with progress("seeking a minimal conflict"):
+        found = conflict(network, seed=seed, budget=budget)
+        if found is None:
+            return [], ""
+        kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
+        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
+
+
+def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
+    from ninefold.io.files import published
+    from ninefold.layout.realize import realize
+    from ninefold.layout.witness import witness_svg
+
+    with progress("drawing"), published(out, force=force) as file:
+        file.write_text(witness_svg(realize(scenario), title=title), encoding="utf-8")
