@@ -16,7 +16,7 @@ from ninefold.reasoner.infer import entails, infer, minimal
 from ninefold.reasoner.network import Network
 from ninefold.reasoner.refutation import refute
 from ninefold.reasoner.repair import repair
-from ninefold.reasoner.scenarios import count, scenarios
+from ninefold.reasoner.scenarios import count, scenarios, some_scenario
 from tests.oracle.network_reference import Reference, random_network
 
 CALCULI = [RCC8, RCC5, POINT, ALLEN]
@@ -226,6 +226,16 @@ def test_scenarios_are_all_there_are_each_once(calculus):
         if len(expected) > 1:
             limited = count(net, limit=len(expected) - 1)
             assert (limited.count, limited.exact) == (len(expected) - 1, False)
+
+
+@EVERY
+def test_some_scenario_is_one_where_there_is_one(calculus):
+    for net, reference, constraints in random_networks(calculus, 15, 40, (2, 8), density=(0.3, 1.0)):
+        found = some_scenario(net)
+        if found is None:
+            assert reference.solve(net.n_entities, constraints) is None
+        else:
+            assert reference.is_scenario(net.n_entities, constraints, named(found))
 
 
 @EVERY
