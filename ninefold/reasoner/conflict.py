@@ -28,6 +28,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ._sparse_trace import pairs_behind_refutation
 from .check import Consistent, Inconsistent, check
 from .closure import RecordedClosure
 from .refutation import refute
@@ -39,7 +40,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Conflict", "conflict"]
 
-_CASES = 100
+_DENSE = 400
+"""Entities above which closure keeps a chordal completion of the stated pairs instead of all."""
+
+_CASES = 30
 """Cases up to which a proof by cases is tried for what it says about the statements used."""
 
 
@@ -140,6 +144,7 @@ class Shrinker:
         self._deadline = deadline
         self._soft_only = soft_only
         self._late = False
+        self._too_long = 2 * net.n_statements + 1
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
         """Return a conflict among statements `indices`, and whether it is minimal; None if they are consistent.
@@ -202,6 +207,15 @@ class Shrinker:
     def _used(self, kept: Sequence[int]) -> list[int] | None:
         """Return the statements closure needs to refute `kept`, fewer at every round; None if it does not."""
         used: list[int] | None = None
+        while (part := part_of(self._net, kept)).n_entities > _DENSE:
+            pairs = part.constraints()
+            behind = pairs_behind_refutation(part.calculus, pairs)
+            if behind is None:
+                return used
+            found = self._with_hard(kept, {sorted(kept)[k] for pair in behind for k in pairs.statements(pair)})
+            if len(found) == len(kept):
+                return found
+            used = kept = found
         while True:
             closure = self._refuting_closure(kept)
             if closure is None:
@@ -228,12 +242,18 @@ class Shrinker:
         return None
 
     def _used_by_cases(self, kept: Sequence[int]) -> list[int]:
-        """Return the statements that a proof by cases needs, or all of them where it would be long."""
+        """Return the statements that a proof by cases needs, or all of them where it would be long.
+
+        After a long one the next is sought when half of the statements are gone.
+        """
+        if 2 * len(kept) > self._too_long:
+            return list(kept)
         part = part_of(self._net, kept)
         about = [k for k in kept if self._net.statements[k].a != self._net.statements[k].b]
         triples = [(part.index(s.a), part.index(s.b), s.mask) for s in (self._net.statements[k] for k in about)]
         found = refute(self._net.calculus, part.n_entities, triples, most=_CASES)
         if found is None:
+            self._too_long = len(kept)
             return list(kept)
         return self._with_hard(kept, {about[k] for k in found.sources if k < len(about)})
 

@@ -37,7 +37,8 @@ __all__ = ["Explanation", "explain"]
 MOST_CASES = 24
 """Cases a proof is printed with unless asked otherwise."""
 
-_SEARCHED = 2000
+_SEARCHED = 8
+"""Closures tried for each case that may be printed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,21 +89,24 @@ def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0)
     net = found.to_network()
     statements = [s for s in found.statements if s.a != s.b]
     triples = [(net.index(s.a), net.index(s.b), s.mask) for s in statements]
-    refutation = refute(net.calculus, net.n_entities, triples, most=_SEARCHED)
+    refutation = refute(net.calculus, net.n_entities, triples, most=_SEARCHED * most)
     if refutation is None or refutation.n_leaves > most:
-        return Explanation(found, tuple(_listed(found, refutation)), 0)
+        return Explanation(found, tuple(_listed(found, refutation, most)), 0)
     writer = _Writer(net, statements)
     writer.refutation(refutation)
     return Explanation(found, tuple(writer.lines), refutation.n_leaves)
 
 
-def _listed(found: Conflict, refutation: Refutation | None) -> list[str]:
+def _listed(found: Conflict, refutation: Refutation | None, most: int) -> list[str]:
     calculus = found.network.calculus
-    size = f"more than {_SEARCHED} attempts at closure" if refutation is None else f"{refutation.n_leaves} cases"
+    if refutation is None:
+        end = f"No proof of up to {most} cases was found, so none is printed; check confirms the contradiction."
+    else:
+        end = f"The proof takes {refutation.n_leaves} cases and is not printed; check confirms the contradiction."
     shown = [f"  {phrase(calculus, s.a, s.mask, s.b)}{_said(s)}" for s in found.statements]
     head = f"These {len(shown)} statements contradict each other"
     necessary = ", and none of them can be left out" if found.minimal else ""
-    return [f"{head}{necessary}:", *shown, f"The proof takes {size} and is not printed; check confirms it."]
+    return [f"{head}{necessary}:", *shown, end]
 
 
 def _said(s: Statement) -> str:

@@ -34,8 +34,8 @@ import numpy as np
 from ninefold.errors import BadInput
 
 from .check import Consistent, Inconsistent, check
-from .closure import RecordedClosure
 from .conflict import Conflict, conflict
+from .scenarios import closed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -154,7 +154,7 @@ def infer(net: Network, a: str | int, b: str | int, *, seed: int = 0, budget: fl
     first, second = net.entities[i], net.entities[j]
     kept, calculus = net.copy(), net.calculus
     if net.n_entities <= _DENSE:
-        closure = _closed(net)
+        closure = closed(net)
         label = 0 if closure is None else closure.relation(i, j)
     else:
         label = net.stated(first, second)
@@ -261,7 +261,7 @@ def minimal(net: Network, *, seed: int = 0, budget: float | None = None) -> Mini
     """
     deadline = None if budget is None else time.perf_counter() + budget
     calculus, n, names = net.calculus, net.n_entities, net.entities
-    closure = _closed(net)
+    closure = closed(net)
     verdict = None if closure is None else check(net, budget=budget, seed=seed)
     if closure is None or isinstance(verdict, Inconsistent):
         return MinimalNetwork(calculus, names, np.zeros((n, n), dtype=calculus.base_composition.dtype))
@@ -290,15 +290,6 @@ def minimal(net: Network, *, seed: int = 0, budget: float | None = None) -> Mini
 
 def _see(seen: NDArray[np.integer], scenario: Scenario) -> None:
     seen |= (np.uint64(1) << scenario.bases.astype(np.uint64)).astype(seen.dtype)
-
-
-def _closed(net: Network) -> RecordedClosure | None:
-    """Return the closure of all statements, or None if it refutes them."""
-    closure = RecordedClosure(net.calculus, net.n_entities)
-    for s in net.statements:
-        if s.a != s.b and not closure.state(net.index(s.a), net.index(s.b), s.mask, s.index):
-            return None
-    return closure if closure.close() else None
 
 
 def _left(deadline: float | None) -> float | None:

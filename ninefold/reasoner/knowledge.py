@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -44,7 +44,7 @@ from .words import phrase
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ninefold.mapping import PlaneMap
+    from ninefold.mapping import PlaneMap, Set
 
     from .check import Consistent, Inconsistent, Unknown
 
@@ -52,6 +52,33 @@ __all__ = ["MAPPED", "Contradiction", "KnowledgeBase"]
 
 MAPPED = "mapped"
 """Label of the statements that come from the map."""
+
+
+@runtime_checkable
+class Declared(Protocol):
+    """A statement whose relations are names, as an atlas keeps them."""
+
+    @property
+    def a(self) -> str: ...
+    @property
+    def b(self) -> str: ...
+    @property
+    def relations(self) -> tuple[str, ...]: ...
+    @property
+    def label(self) -> str | None: ...
+    @property
+    def weight(self) -> float | None: ...
+
+
+class HasSets(Protocol):
+    """What `KnowledgeBase.from_atlas` needs of an atlas."""
+
+    @property
+    def plane(self) -> PlaneMap: ...
+    @property
+    def sets(self) -> Mapping[str, Set]: ...
+    @property
+    def statements(self) -> tuple[Declared, ...]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +117,8 @@ class KnowledgeBase:
     names
         Names to regions of it.
     statements
-        Tuples as `Network.add` takes them, ``(a, b, relations)`` and perhaps a label and a weight; or `Statement` values;
-        or an RCC-8 network. Relations in Egenhofer's words or RCC-8's.
+        Tuples as `Network.add` takes them, ``(a, b, relations)`` and perhaps a label and a weight; or `Statement` values,
+        of a network or of an atlas; or an RCC-8 network. Relations in Egenhofer's words or RCC-8's.
 
     Attributes
     ----------
@@ -118,7 +145,7 @@ class KnowledgeBase:
         self,
         plane: PlaneMap,
         names: Mapping[str, Region],
-        statements: Iterable[Statement | tuple[object, ...]] | Network = (),
+        statements: Iterable[Statement | Declared | tuple[object, ...]] | Network = (),
     ) -> None:
         self.plane = plane
         self.names = dict(names)
@@ -146,9 +173,29 @@ class KnowledgeBase:
         for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
             self.network.add(names[i], names[j], RCC8_OF_NAME[str(words[i, j])], MAPPED, math.inf)
 
-    def _say(self, s: Statement | tuple[object, ...]) -> None:
+    @classmethod
+    def from_atlas(cls, atlas: HasSets) -> KnowledgeBase:
+        """Make one of the regions and the statements of an atlas; its points and lines are left out.
+
+        Raises
+        ------
+        BadInput
+            A statement about a stored point or line: RCC-8 has no relation for it.
+        """
+        sets = dict(atlas.sets)
+        regions = {name: x for name, x in sets.items() if isinstance(x, Region)}
+        for s in atlas.statements:
+            for name in (s.a, s.b):
+                if name in sets and name not in regions:
+                    raise BadInput(f"{name!r} is {sets[name]!r}; statements can be reasoned about between regions only")
+        return cls(atlas.plane, regions, atlas.statements)
+
+    def _say(self, s: Statement | Declared | tuple[object, ...]) -> None:
         if isinstance(s, Statement):
             self.network.add(s.a, s.b, s.mask, s.label, s.weight)
+            return
+        if isinstance(s, Declared):
+            self.network.add(s.a, s.b, s.relations, s.label, s.weight)
             return
         if not isinstance(s, tuple | list) or not 3 <= len(s) <= 5:
             raise BadInput(f"a statement is (a, b, relations) and perhaps a label and a weight, not {s!r}")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
+from ninefold.reasoner._sparse_trace import pairs_behind_refutation
 from ninefold.reasoner.ask import ask
 from ninefold.reasoner.closure import RecordedClosure
 from ninefold.reasoner.conflict import Conflict, conflict
@@ -15,7 +16,7 @@ from ninefold.reasoner.infer import entails, infer, minimal
 from ninefold.reasoner.network import Network
 from ninefold.reasoner.refutation import refute
 from ninefold.reasoner.repair import repair
-from ninefold.reasoner.scenarios import count, scenarios
+from ninefold.reasoner.scenarios import count, scenarios, some_scenario
 from tests.oracle.network_reference import Reference, random_network
 
 CALCULI = [RCC8, RCC5, POINT, ALLEN]
@@ -228,6 +229,16 @@ def test_scenarios_are_all_there_are_each_once(calculus):
 
 
 @EVERY
+def test_some_scenario_is_one_where_there_is_one(calculus):
+    for net, reference, constraints in random_networks(calculus, 15, 40, (2, 8), density=(0.3, 1.0)):
+        found = some_scenario(net)
+        if found is None:
+            assert reference.solve(net.n_entities, constraints) is None
+        else:
+            assert reference.is_scenario(net.n_entities, constraints, named(found))
+
+
+@EVERY
 def test_infer_minimal_and_entails_agree_with_all_scenarios(calculus):
     some = 0
     for net, reference, constraints in random_networks(calculus, 5, 14, (3, 5), label=0.3):
@@ -360,3 +371,35 @@ def test_ask_agrees_with_all_scenarios(calculus):
 def check_forced(calculus, n, kept, truth, *, forced):
     if len(kept) >= n - 1 or calculus.n_bases <= 5:
         assert {truth(s) for s in every_scenario(calculus, n, kept)} <= {forced}
+
+
+def test_the_sparse_trace_names_statements_that_closure_refutes():
+    rng = np.random.default_rng(13)
+    reference, refuted = REFERENCES["rcc8"], 0
+    for _ in range(150):
+        n = int(rng.integers(4, 9))
+        constraints = random_network(RCC8, rng, n, float(rng.uniform(2, n - 1)), 2.5)
+        pairs = Network.from_constraints(RCC8, n, constraints).constraints()
+        found = pairs_behind_refutation(RCC8, pairs)
+        closes = reference.closure(n, reference.labels(n, constraints)) is not None
+        if found is None:
+            assert closes or reference.solve(n, constraints) is None
+            continue
+        refuted += 1
+        triples = pairs.triples()
+        assert reference.closure(n, reference.labels(n, [triples[pair] for pair in found])) is None
+    assert refuted > 20
+
+
+def test_conflicts_of_networks_too_large_for_all_pairs():
+    rng = np.random.default_rng(14)
+    net = Network("rcc8")
+    for a in range(1, 600):
+        for b in rng.integers(max(0, a - 20), a, 2).tolist():
+            net.add(b, a, "DC EC PO TPP NTPP")
+    for k in range(8):
+        net.add(5 + 30 * k, 35 + 30 * k, "TPP NTPP", f"link {k}")
+    net.add(5, 245, "DC EC", "the false one")
+    found = conflict(net)
+    assert {s.label for s in found} == {*(f"link {k}" for k in range(8)), "the false one"}
+    assert "the false one" in str(explain(found))

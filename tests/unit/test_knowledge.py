@@ -100,3 +100,21 @@ def test_bad_input(plane, names):
         KnowledgeBase(plane, names, Network("point"))
     with pytest.raises(BadInput, match="a statement is"):
         KnowledgeBase(plane, names, [("x", "y")])
+
+
+def test_an_atlas_brings_its_regions_and_statements(plane, names, tmp_path):
+    from ninefold.io.atlas import Atlas
+    from ninefold.io.records import Statement
+
+    with Atlas.from_map(plane, tmp_path / "town.atlas") as atlas:
+        atlas.name_all({**names, "gate": "vertex:5"})
+        atlas.declare(Statement("boiler room", ("inside",), "plant", label="the plan"))
+        base = KnowledgeBase.from_atlas(atlas)
+        assert set(base.names) == set(names)
+        assert base.infer("boiler room", "block 12").relations == ("DC",)
+        atlas.declare(Statement("boiler room", ("meet",), "block 12", label="the caretaker"))
+        found = KnowledgeBase.from_atlas(atlas).contradiction()
+        assert [str(s) for s in found.said] == ["the plan", "the caretaker"]
+        atlas.declare(Statement("gate", ("meet",), "plant"))
+        with pytest.raises(BadInput, match="between regions only"):
+            KnowledgeBase.from_atlas(atlas)

@@ -156,7 +156,7 @@ def test_compose(run):
     assert run("compose", "TPP", "EC|PO") == run("compose", "coveredBy", "meet overlap", "--sat")
     assert run("compose", "<", "=", "--calculus", "point", "--json")[1] == {"relations": ["<"]}
     with pytest.raises(UnknownName, match="did you mean"):
-        run("compose", "insid", "EC")
+        run("compose", "insidex", "EC")
     with pytest.raises(UnknownName):
         run("compose", "EC", "EC", "--calculus", "rcc9")
 
@@ -165,7 +165,7 @@ def test_compose(run):
 def test_bad_files(run, tmp_path, command):
     with pytest.raises(NinefoldError, match="cannot read"):
         run(command, tmp_path / "nothing.csv")
-    wrong = network(tmp_path / "wrong.csv", ("a", "insid", "b", "", ""))
+    wrong = network(tmp_path / "wrong.csv", ("a", "insidex", "b", "", ""))
     with pytest.raises(NinefoldError, match=r"wrong\.csv, line 2"):
         run(command, wrong)
 

@@ -20,7 +20,6 @@ from ninefold._kernels import kernel
 from .columns import (
     AT,
     CLAUSE_TROUBLE,
-    CURSOR,
     DEPTH,
     EDGE,
     HELD,

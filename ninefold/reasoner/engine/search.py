@@ -20,10 +20,10 @@ from .columns import (
     ARENA_FULL,
     ARENA_TOP,
     AT,
+    CHECKED,
     CLAUSE,
     CONFLICT,
     CONFLICTS,
-    CHECKED,
     CONSISTENT,
     CORE,
     CURSOR,
@@ -35,7 +35,6 @@ from .columns import (
     FULL,
     HEAD,
     INCONSISTENT,
-    KEEP,
     LAST,
     LEVEL,
     LITERALS,
@@ -178,9 +177,7 @@ def learn(s):  # type: ignore[no-untyped-def]
     # far down a network that gives way easily, what lies between is worth keeping: step back one level only
     if depth - level > LONGEST_JUMP:
         level = depth - 1
-    backjump(
-        s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level
-    )
+    backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level)
     clause = -1
     if n > 1:
         clause = add_clause(s.edges, s.arena, s.place, s.watch, reg, s.learnt, n, lbd)
@@ -239,9 +236,7 @@ def search(s, limit):  # type: ignore[no-untyped-def]
         if reg[SINCE_RESTART] >= RESTART_UNIT * luby(reg[RESTARTS] + 1):
             reg[RESTARTS] += 1
             reg[SINCE_RESTART] = 0
-            backjump(
-                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0
-            )
+            backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0)
             if reg[CONFLICTS] >= reg[REDUCE_AT]:
                 return REDUCE
             continue

@@ -111,9 +111,7 @@ def _sweep_planes(  # type: ignore[no-untyped-def]
                 _report(reg, target, arc, source)
                 return False
             queued = new != allowed or core != 0
-            narrow(
-                dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, queued
-            )
+            narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, queued)
     reg[TICKS] += planes.shape[1]
     return True
 
@@ -183,9 +181,7 @@ def close_triangles(dom, edges, nodes, upper, planes, active, trail, reg, conver
     arc = 2 * edge
     reg[TICKS] += 8
     if i < reg[CORE]:
-        if not _visit_later(
-            dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j
-        ):
+        if not _visit_later(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):
             return False
     else:
         for back in range(2):
