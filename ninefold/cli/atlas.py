@@ -40,6 +40,8 @@ def map_source(
     if kind == "source" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
     refuse_existing(out, force=force)
+    if out.exists() and not source.startswith("sample:") and out.samefile(source):
+        raise BadInput(f"{out}: the source itself, which the atlas would replace; give -o another name")
     with progress(f"mapping {source}"):
         atlas = (
             _from_walk(source, out, tolerance, force=force)

@@ -14,8 +14,9 @@ import pytest
 
 from ninefold import cli
 from ninefold.cli import _output
-from ninefold.io import Atlas, demo, read_walk, samples
-from ninefold.mapping import build
+from ninefold.errors import WalkError
+from ninefold.io import Atlas, demo, read_walk, samples, write_walk
+from ninefold.mapping import Visit, Walk, WalkHeader, build
 
 MODULE = [sys.executable, "-c", "from ninefold.cli import main; main()"]
 
@@ -260,6 +261,31 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     assert_refused(run("info", tmp_path / "notes.txt"), "not an atlas")
     assert figure8.read_bytes() == before
     assert sorted(file.name for file in tmp_path.iterdir()) == ["bad.jsonl", "figure8.atlas", "notes.txt"]
+
+
+def test_force_never_replaces_the_source(tmp_path, run):
+    walk, streets = tmp_path / "ring.jsonl", tmp_path / "ring.geojson"
+    assert run("explore", "sample:ring", "-o", walk)[0] == 0
+    streets.write_bytes(samples.path("ring").read_bytes())
+    for command, source in (("map", walk), ("map", streets), ("explore", streets)):
+        before = source.read_bytes()
+        assert_refused(run(command, source, "-o", source, "--force"), "the source itself", "another name")
+        assert source.read_bytes() == before
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes of Unix")
+def test_pipes_and_devices_are_neither_read_nor_replaced(tmp_path, run):
+    pipe = tmp_path / "pipe.svg"
+    os.mkfifo(pipe)
+    atlas = tmp_path / "ring.atlas"
+    assert_refused(run("map", pipe, "-o", atlas), "save it to a file")
+    assert run("map", "sample:ring", "-o", atlas)[0] == 0
+    assert_refused(run("map", "sample:ring", "-o", pipe, "--force"), "a device or a pipe")
+    assert_refused(run("explore", "sample:ring", "-o", pipe, "--force"), "a device or a pipe")
+    assert_refused(run("draw", atlas, "-o", pipe, "--force"), "a device or a pipe")
+    with pytest.raises(WalkError, match="a device or a pipe"):
+        write_walk(Walk(WalkHeader(), (Visit("a"),)), pipe)
+    assert pipe.is_fifo()
 
 
 def test_our_own_mistakes_are_one_line_too(run, figure8, monkeypatch):
