@@ -416,6 +416,30 @@ def test_a_reader_that_goes_away_is_no_traceback(figure8):
     assert done.stderr == ""
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")  # noqa: PTH110
+@pytest.mark.parametrize("buffering", ["", "1"])
+@pytest.mark.parametrize("arguments", [["info"], ["info", "--json"], ["relate", "none", "other", "--json"]])
+def test_an_output_that_cannot_be_written_is_one_line(figure8, arguments, buffering):
+    command = [*MODULE, arguments[0], figure8, *arguments[1:]]
+    environment = {**os.environ, "PYTHONUNBUFFERED": buffering}
+    with open("/dev/full", "w") as full:  # noqa: PTH123
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, env=environment)
+        assert done.returncode == 2
+        assert done.stderr.startswith("ninefold: ")
+        assert done.stderr.count("\n") == 1
+        assert subprocess.run([*MODULE, "info", "none"], stdout=full, stderr=full, env=environment).returncode == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of Unix")
+@pytest.mark.parametrize(("closed", "code"), [(">&-", 0), ("2>&-", 0), (">&- 2>&-", 0), (">&-", 2)])
+def test_streams_that_the_caller_closed_are_no_mistake(figure8, closed, code):
+    path = figure8 if code == 0 else figure8.with_name("none.atlas")
+    command = ["sh", "-c", f'"$@" {closed}', "sh", *MODULE, "info", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == code
+    assert done.stderr.count("\n") == (code == 2)
+
+
 WAITING = """
 import os, time
 from ninefold import cli
