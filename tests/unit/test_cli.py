@@ -150,6 +150,8 @@ def test_names_that_do_not_exist_suggest_near_ones(run, figure8):
     run("name", figure8, "living room", "cycle:v2,v3,v6,v5,v4")
     assert_refused(run("relate", figure8, "living rom", "vertex:v1"), "did you mean 'living room'?")
     assert_refused(run("relate", figure8, "vertex:v10", "living room"), "no vertex named 'v10'", "'v1'")
+    assert_refused(run("relate", figure8, "v1", "living room"), "no set named 'v1'", "the place", "'vertex:v1'")
+    assert_refused(run("relate", figure8, "v0-v1", "living room"), "the edge", "'edge:@v0-v1'")
     assert_refused(run("name", figure8, "x", "edge:v1,v8,v7"), "two ends")
     assert_refused(run("name", figure8, "x", "edge:v1,v5"), "no edge")
     assert_refused(run("name", figure8, "x", "cycle:v0,v1,v3"), "no edge")
