@@ -59,11 +59,14 @@ def map_source(
 
 
 def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> "Atlas":
+    from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
     from ninefold.io import Atlas, Provenance, read_walk
 
-    return Atlas.from_walk(
-        read_walk(source, tolerance=tolerance), out, provenance=Provenance.of_file(source, "walk"), force=force
-    )
+    walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
+    try:
+        return Atlas.from_walk(walk, out, provenance=origin, force=force)
+    except (AmbiguousDart, NotPlane, WalkError) as error:  # they tell the event, not the file
+        raise BadInput(f"{source}: {error}") from None
 
 
 def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":

@@ -258,6 +258,8 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     bad.write_text('{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}\n{"place": "a"}\n{"heading": NaN}\n')
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl:3")
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas", "--drop-crossing"), "--drop-crossing")
+    bad.write_text(bad.read_text().replace("NaN", "0") + '{"place": "b", "exits": [0]}\n')
+    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl: event 3", "along none of its 1 exit")
     (tmp_path / "notes.txt").write_text("hello")
     assert_refused(run("map", tmp_path / "notes.txt", "-o", tmp_path / "x.atlas"), "neither an atlas")
     assert_refused(run("info", tmp_path / "notes.txt"), "not an atlas")
