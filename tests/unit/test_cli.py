@@ -267,6 +267,39 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["bad.jsonl", "figure8.atlas", "notes.txt"]
 
 
+@pytest.mark.parametrize(
+    ("unit", "headings", "words"),
+    [
+        ("yaw-rad", [90, 180, 270, 0], "headings reach 270 and the header says yaw-rad"),
+        ("yaw-deg", [0, 1.5708, 3.1416, 4.7124], "if they are radians"),
+        ("bearing-deg", [0, 1.5708, 3.1416, 4.7124], "if they are radians"),
+        ("yaw-deg", [0, 90, 180, 270], None),
+        ("bearing-deg", [0, 270, 180, 90], None),
+        ("yaw-deg", [0, 1, 2, 3], None),
+        ("yaw-rad", [0, 1.5708, 3.1416, 4.7124 + 2 * 6.2832], None),
+    ],
+)
+def test_a_mistaken_unit_of_headings_is_doubted(tmp_path, run, run_json, unit, headings, words):
+    walk = tmp_path / "walk.jsonl"
+    lines = [{"ninefold": "walk", "version": 1, "heading": unit}, {"place": "0"}]
+    for place, heading in enumerate(headings, 1):
+        lines += [{"heading": heading}, {"place": str(place)}]
+    walk.write_text("\n".join(map(json.dumps, lines)))
+    code, out, err = run("map", walk, "-o", tmp_path / "walk.atlas")
+    assert (code, out.count("\n")) == (0, 1)
+    _, found = run_json("map", walk, "-o", tmp_path / "walk.atlas", "--force")
+    if words is None:
+        assert err == ""
+        assert found["warnings"] == []
+    else:
+        assert words in err
+        assert len(found["warnings"]) == 1
+    lines[-1] = {"place": "0"}  # closes a loop that cannot be
+    lines[4] = lines[2]
+    walk.write_text("\n".join(map(json.dumps, lines)))
+    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl: event", words or "")
+
+
 def test_force_never_replaces_the_source(tmp_path, run):
     walk, streets = tmp_path / "ring.jsonl", tmp_path / "ring.geojson"
     assert run("explore", "sample:ring", "-o", walk)[0] == 0
