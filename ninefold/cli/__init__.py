@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, TextIO
 
 from ninefold.errors import NinefoldError
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["main", "run"]
 
+BAD_INPUT = 2
 INTERRUPTED = 130
 CUT_OFF = 141
 """The reader of our output went away, as with ``| head``: what a shell shows for SIGPIPE."""
@@ -27,18 +29,31 @@ CUT_OFF = 141
 
 def main() -> None:
     """Run the command line of this process and exit with its code."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by the caller, as with `>&-`; no file of ours may take its place
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")  # a street name never stops a terminal that cannot show it
     code = run(sys.argv[1:])
     try:
         sys.stdout.flush()
-    except BrokenPipeError:
-        code = CUT_OFF
-    if code == CUT_OFF and sys.__stdout__ is not None:
-        # Python flushes once more on exit; give it something that can be flushed.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.__stdout__.fileno())
+    except OSError as error:
+        _silence(sys.stdout)
+        if isinstance(error, BrokenPipeError):
+            code = CUT_OFF
+        elif code != BAD_INPUT:  # else the one line was printed
+            code = _failed(_explained(error), wants_json=False)
+    try:
+        sys.stderr.flush()
+    except OSError:
+        _silence(sys.stderr)
     sys.exit(code)
+
+
+def _silence(stream: TextIO) -> None:
+    """Send a stream that failed to the null device: Python flushes it once more on exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -84,8 +99,7 @@ def _explained(error: Exception) -> str:
         command = context.command_path if context is not None else "ninefold"
         return f"{describe()} (see {command} --help)"
     if isinstance(error, OSError):
-        place = f"{error.filename}: " if error.filename else ""
-        return f"{place}{error.strerror or error}"
+        return f"{error.filename or 'the output cannot be written'}: {error.strerror or error}"
     if os.environ.get("NINEFOLD_TRACEBACK"):
         raise error
     return (
@@ -98,8 +112,9 @@ def _failed(message: str, *, wants_json: bool) -> int:
     from ._output import one_line, print_json
 
     line = one_line(message)
-    sys.stdout.flush()
-    print(f"ninefold: {line}", file=sys.stderr)
-    if wants_json:
-        print_json({"error": line})
-    return 2
+    with suppress(OSError):  # where nothing can be written, the exit code still tells
+        print(f"ninefold: {line}", file=sys.stderr, flush=True)
+    with suppress(OSError):
+        if wants_json:
+            print_json({"error": line})
+    return BAD_INPUT

@@ -40,14 +40,15 @@ def map_source(
     if kind == "source" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
     refuse_existing(out, force=force)
+    if out.exists() and not source.startswith("sample:") and out.samefile(source):
+        raise BadInput(f"{out}: the source itself, which the atlas would replace; give -o another name")
     with progress(f"mapping {source}"):
-        atlas = (
-            _from_walk(source, out, tolerance, force=force)
-            if kind == "walk"
-            else _from_source(source, out, drop_crossing=drop_crossing, force=force)
-        )
+        if kind == "walk":
+            atlas, doubts = _from_walk(source, out, tolerance, force=force)
+        else:
+            atlas, doubts = _from_source(source, out, drop_crossing=drop_crossing, force=force), []
     with atlas:
-        plane, warnings = atlas.plane, atlas.warnings
+        plane, warnings = atlas.plane, (*doubts, *atlas.warnings)
     if as_json:
         print_json({"file": str(out), **_counts(plane), "warnings": list(warnings)})
     else:
@@ -56,12 +57,17 @@ def map_source(
     return 0
 
 
-def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> "Atlas":
+def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:
+    from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
     from ninefold.io import Atlas, Provenance, read_walk
+    from ninefold.io._heading_units import doubts
 
-    return Atlas.from_walk(
-        read_walk(source, tolerance=tolerance), out, provenance=Provenance.of_file(source, "walk"), force=force
-    )
+    walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
+    try:
+        return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
+    except (AmbiguousDart, NotPlane, WalkError) as error:  # they tell the event, not the file
+        reason = "; ".join([str(error), *doubts(walk)])
+        raise BadInput(f"{source}: {reason}") from None
 
 
 def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":

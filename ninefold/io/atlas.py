@@ -313,8 +313,16 @@ class Atlas:
         if text.lstrip().startswith("["):
             return set_of_list(self.plane, text)
         if ":" not in text:
-            raise UnknownName("set", text, self.names)
+            raise self._no_set(text)
         return self.plane.parse(text)
+
+    def _no_set(self, text: str) -> UnknownName:
+        """Return the error for a text that is no stored name, but may be meant for a place or an edge."""
+        error, plane = UnknownName("set", text, self.names), self.plane
+        for kind, names, form in (("place", plane.vertex_names, "vertex:"), ("edge", plane.edge_names, "edge:@")):
+            if text in names:
+                error.message += f"; the {kind} of that name is {form + text!r}"
+        return error
 
     def name(self, name: str, item: Set | str, *, force: bool = False) -> Set:
         """Store a set under a name, and return it.

@@ -56,10 +56,12 @@ def refuse_existing(path: Path, *, force: bool) -> None:
     Raises
     ------
     BadInput
-        If the target exists (unless `force`) or is a folder, or its folder does not exist or is read-only.
+        If the target exists (unless `force`), is a folder, a device or a pipe, or its folder does not exist or is read-only.
     """
     if path.is_dir():
         raise BadInput(f"{path}: a folder; give a file name")
+    if path.exists() and not path.is_file():  # a rename would put a file in the place of /dev/null
+        raise BadInput(f"{path}: a device or a pipe, where no file can be put; give a file name")
     if path.exists() and not force:
         raise _exists(path)
     if not path.parent.is_dir():

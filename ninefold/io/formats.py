@@ -33,6 +33,8 @@ def format_of(path: str | PathLike[str]) -> Format:
         return "source"
     file = Path(path)
     try:
+        if file.exists() and not file.is_dir() and not file.is_file():
+            raise BadInput(f"{file}: a device or a pipe, which can be read only once; save it to a file first")
         with file.open("rb") as stream:
             head = stream.read(4096)
     except OSError as error:

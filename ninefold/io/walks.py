@@ -19,6 +19,7 @@ import json
 import os
 import secrets
 from contextlib import contextmanager, suppress
+from errno import EEXIST
 from itertools import pairwise
 from math import degrees, fmod, isfinite, radians
 from pathlib import Path
@@ -114,6 +115,8 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     header = walk.header
     temporary = target.parent / f".{target.name}.{secrets.token_hex(4)}.tmp"
     try:
+        if target.exists() and not target.is_file():  # a rename would put a file in the place of /dev/null
+            raise FileExistsError(EEXIST, "there is a folder, a device or a pipe")
         with temporary.open("x", encoding="utf-8", newline="\n") as file:
             file.write(_line(header_to_json(header)))
             file.writelines(_line(event_to_json(event, header)) for event in walk.events)

@@ -14,8 +14,9 @@ import pytest
 
 from ninefold import cli
 from ninefold.cli import _output
-from ninefold.io import Atlas, demo, read_walk, samples
-from ninefold.mapping import build
+from ninefold.errors import WalkError
+from ninefold.io import Atlas, demo, read_walk, samples, write_walk
+from ninefold.mapping import Visit, Walk, WalkHeader, build
 
 MODULE = [sys.executable, "-c", "from ninefold.cli import main; main()"]
 
@@ -149,6 +150,8 @@ def test_names_that_do_not_exist_suggest_near_ones(run, figure8):
     run("name", figure8, "living room", "cycle:v2,v3,v6,v5,v4")
     assert_refused(run("relate", figure8, "living rom", "vertex:v1"), "did you mean 'living room'?")
     assert_refused(run("relate", figure8, "vertex:v10", "living room"), "no vertex named 'v10'", "'v1'")
+    assert_refused(run("relate", figure8, "v1", "living room"), "no set named 'v1'", "the place", "'vertex:v1'")
+    assert_refused(run("relate", figure8, "v0-v1", "living room"), "the edge", "'edge:@v0-v1'")
     assert_refused(run("name", figure8, "x", "edge:v1,v8,v7"), "two ends")
     assert_refused(run("name", figure8, "x", "edge:v1,v5"), "no edge")
     assert_refused(run("name", figure8, "x", "cycle:v0,v1,v3"), "no edge")
@@ -255,11 +258,71 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     bad.write_text('{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}\n{"place": "a"}\n{"heading": NaN}\n')
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl:3")
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas", "--drop-crossing"), "--drop-crossing")
+    bad.write_text(bad.read_text().replace("NaN", "0") + '{"place": "b", "exits": [0]}\n')
+    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl: event 3", "along none of its 1 exit")
     (tmp_path / "notes.txt").write_text("hello")
     assert_refused(run("map", tmp_path / "notes.txt", "-o", tmp_path / "x.atlas"), "neither an atlas")
     assert_refused(run("info", tmp_path / "notes.txt"), "not an atlas")
     assert figure8.read_bytes() == before
     assert sorted(file.name for file in tmp_path.iterdir()) == ["bad.jsonl", "figure8.atlas", "notes.txt"]
+
+
+@pytest.mark.parametrize(
+    ("unit", "headings", "words"),
+    [
+        ("yaw-rad", [90, 180, 270, 0], "headings reach 270 and the header says yaw-rad"),
+        ("yaw-deg", [0, 1.5708, 3.1416, 4.7124], "if they are radians"),
+        ("bearing-deg", [0, 1.5708, 3.1416, 4.7124], "if they are radians"),
+        ("yaw-deg", [0, 90, 180, 270], None),
+        ("bearing-deg", [0, 270, 180, 90], None),
+        ("yaw-deg", [0, 1, 2, 3], None),
+        ("yaw-rad", [0, 1.5708, 3.1416, 4.7124 + 2 * 6.2832], None),
+    ],
+)
+def test_a_mistaken_unit_of_headings_is_doubted(tmp_path, run, run_json, unit, headings, words):
+    walk = tmp_path / "walk.jsonl"
+    lines = [{"ninefold": "walk", "version": 1, "heading": unit}, {"place": "0"}]
+    for place, heading in enumerate(headings, 1):
+        lines += [{"heading": heading}, {"place": str(place)}]
+    walk.write_text("\n".join(map(json.dumps, lines)))
+    code, out, err = run("map", walk, "-o", tmp_path / "walk.atlas")
+    assert (code, out.count("\n")) == (0, 1)
+    _, found = run_json("map", walk, "-o", tmp_path / "walk.atlas", "--force")
+    if words is None:
+        assert err == ""
+        assert found["warnings"] == []
+    else:
+        assert words in err
+        assert len(found["warnings"]) == 1
+    lines[-1] = {"place": "0"}  # closes a loop that cannot be
+    lines[4] = lines[2]
+    walk.write_text("\n".join(map(json.dumps, lines)))
+    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl: event", words or "")
+
+
+def test_force_never_replaces_the_source(tmp_path, run):
+    walk, streets = tmp_path / "ring.jsonl", tmp_path / "ring.geojson"
+    assert run("explore", "sample:ring", "-o", walk)[0] == 0
+    streets.write_bytes(samples.path("ring").read_bytes())
+    for command, source in (("map", walk), ("map", streets), ("explore", streets)):
+        before = source.read_bytes()
+        assert_refused(run(command, source, "-o", source, "--force"), "the source itself", "another name")
+        assert source.read_bytes() == before
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes of Unix")
+def test_pipes_and_devices_are_neither_read_nor_replaced(tmp_path, run):
+    pipe = tmp_path / "pipe.svg"
+    os.mkfifo(pipe)
+    atlas = tmp_path / "ring.atlas"
+    assert_refused(run("map", pipe, "-o", atlas), "save it to a file")
+    assert run("map", "sample:ring", "-o", atlas)[0] == 0
+    assert_refused(run("map", "sample:ring", "-o", pipe, "--force"), "a device or a pipe")
+    assert_refused(run("explore", "sample:ring", "-o", pipe, "--force"), "a device or a pipe")
+    assert_refused(run("draw", atlas, "-o", pipe, "--force"), "a device or a pipe")
+    with pytest.raises(WalkError, match="a device or a pipe"):
+        write_walk(Walk(WalkHeader(), (Visit("a"),)), pipe)
+    assert pipe.is_fifo()
 
 
 def test_our_own_mistakes_are_one_line_too(run, figure8, monkeypatch):
@@ -388,6 +451,30 @@ def test_a_reader_that_goes_away_is_no_traceback(figure8):
     os.close(write)
     assert done.returncode == 141
     assert done.stderr == ""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")  # noqa: PTH110
+@pytest.mark.parametrize("buffering", ["", "1"])
+@pytest.mark.parametrize("arguments", [["info"], ["info", "--json"], ["relate", "none", "other", "--json"]])
+def test_an_output_that_cannot_be_written_is_one_line(figure8, arguments, buffering):
+    command = [*MODULE, arguments[0], figure8, *arguments[1:]]
+    environment = {**os.environ, "PYTHONUNBUFFERED": buffering}
+    with open("/dev/full", "w") as full:  # noqa: PTH123
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, env=environment)
+        assert done.returncode == 2
+        assert done.stderr.startswith("ninefold: ")
+        assert done.stderr.count("\n") == 1
+        assert subprocess.run([*MODULE, "info", "none"], stdout=full, stderr=full, env=environment).returncode == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of Unix")
+@pytest.mark.parametrize(("closed", "code"), [(">&-", 0), ("2>&-", 0), (">&- 2>&-", 0), (">&-", 2)])
+def test_streams_that_the_caller_closed_are_no_mistake(figure8, closed, code):
+    path = figure8 if code == 0 else figure8.with_name("none.atlas")
+    command = ["sh", "-c", f'"$@" {closed}', "sh", *MODULE, "info", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == code
+    assert done.stderr.count("\n") == (code == 2)
 
 
 WAITING = """
