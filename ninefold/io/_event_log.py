@@ -41,6 +41,7 @@ class EventLog:
         self._time = -math.inf
         self._plane: PlaneMap | None = None
         self._plane_at = -1
+        self._seen = self.n_events  # what this writer builds on: the log as it was opened, and its own events since
 
     @property
     def origin(self) -> str:
@@ -81,19 +82,20 @@ class EventLog:
             raise BadInput(
                 f"{self.file.path}: made from a finished map, so it takes no events; give the walk an atlas of its own"
             )
-        mapper = self.follow()
-        start, time = mapper.n_events, self._time
+        mapper, start = None, 0
         try:
             with self.file.changing() as connection:
-                if self.n_events != start:
+                if self.n_events != self._seen:
                     raise AtlasError(f"{self.file.path}: another writer has added events meanwhile; open it again to go on")
+                mapper = self.follow()
+                start, time = mapper.n_events, self._time
                 for seq, event in enumerate(events, start + 1):
                     time = checked_time(event, time)
                     mapper.step(event)
                     connection.execute("INSERT INTO event VALUES (?, ?)", (seq, event_text(event)))
-            self._time = time
+            self._time, self._seen = time, mapper.n_events
         except BaseException as error:
-            if mapper.n_events != start or not isinstance(error, NinefoldError):
+            if mapper is None or mapper.n_events != start or not isinstance(error, NinefoldError):
                 self._mapper = None  # ahead of the log, or interrupted in a step: read the log again
             raise
 

@@ -13,6 +13,9 @@ geometry (`shapes`), and shows itself as SVG (`svg`, `labels`, `theme`) or on ma
 ``shapely.relate`` on given or sampled pairs (`sampling`); `verify_geometry` does so on geometry of the caller's. What
 disagrees is shrunk to a small map that still shows it (`shrink`).
 
+**Witnesses.** `realize` makes geometry that satisfies a scenario of RCC-8 or RCC-5, every pair confirmed by GEOS before it is
+returned; `witness_svg` draws it.
+
 shapely, scipy and matplotlib are imported at first use.
 """
 
@@ -22,11 +25,13 @@ from .draw import LAYOUTS, draw
 from .drawing import Drawing
 from .oracle import Disagreement, Report, verify, verify_geometry
 from .planarity import drawing_problems
+from .realize import realize
 from .sampling import random_sets, sample_pairs
 from .schnyder import schnyder
 from .sheet import side_by_side
 from .shrink import shrink
 from .tutte import tutte
+from .witness import witness_svg
 
 __all__ = [
     "LAYOUTS",
@@ -36,6 +41,7 @@ __all__ = [
     "draw",
     "drawing_problems",
     "random_sets",
+    "realize",
     "sample_pairs",
     "schnyder",
     "shrink",
@@ -43,4 +49,5 @@ __all__ = [
     "tutte",
     "verify",
     "verify_geometry",
+    "witness_svg",
 ]

@@ -3,10 +3,10 @@
 **On a map.** `relate` tells how one set lies to another, `relate_pairs` and `relate_all` do so in bulk, and
 `containment_tree` orders regions by what is inside what. A `Relation` is a value: a matrix, a DE-9IM string and a word.
 
-**On declared relations.** A `Network` collects statements. `check` decides whether they can all be true, with a scenario or a
-proof (`prove` confirms it); `conflict` finds a minimal set that cannot, `explain` says why in words; `infer`, `minimal` and
-`entails` tell what follows, `ask` answers Boolean questions, `repair` finds the cheapest statements to drop, `scenarios` and
-`count` enumerate. A `KnowledgeBase` joins mapped sets and declared statements in one network.
+**On declared relations.** A `Network` collects statements. `check` decides whether they can all be true, with a scenario or
+a proof (`prove` confirms it); `conflict` finds a minimal set that cannot, `explain` says why in words; `infer`, `minimal`
+and `entails` tell what follows, `ask` answers Boolean questions, `repair` finds the cheapest statements to drop, `scenarios`
+and `count` enumerate. A `KnowledgeBase` joins mapped sets and declared statements in one network.
 
 The second half loads when it is first used, so that relating two sets starts fast.
 """
