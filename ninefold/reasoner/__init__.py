@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .prove import Proof, prove
     from .repair import Repair, repair
     from .scenario import Scenario
-    from .scenarios import Count, count, scenarios
+    from .scenarios import Count, count, scenarios, some_scenario
 
 __all__ = [
     "NAMES",
@@ -76,6 +76,7 @@ __all__ = [
     "relate_pairs",
     "repair",
     "scenarios",
+    "some_scenario",
 ]
 
 _HOME = {
@@ -89,7 +90,7 @@ _HOME = {
     "prove": ("Proof", "prove"),
     "repair": ("Repair", "repair"),
     "scenario": ("Scenario",),
-    "scenarios": ("Count", "count", "scenarios"),
+    "scenarios": ("Count", "count", "scenarios", "some_scenario"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 

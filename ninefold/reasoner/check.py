@@ -66,9 +66,12 @@ class Consistent:
     @property
     def scenario(self) -> Scenario:
         """One base relation for every pair of entities, all at once possible; made anew at each request, O(n^3)."""
-        from .scenarios import scenarios
+        from .scenarios import some_scenario
 
-        return next(iter(scenarios(self.network, seed=self.seed)))
+        found = some_scenario(self.network, seed=self.seed)
+        if found is None:
+            raise BadInput("the network was changed since it was decided, and is inconsistent now")
+        return found
 
 
 @dataclass(frozen=True, slots=True)
