@@ -12,15 +12,15 @@ import shapely
 from benchmarks.clock import row, title
 from ninefold.encodings import RCC8
 from ninefold.layout.realize import realize
-from ninefold.reasoner.ask import ask
-from ninefold.reasoner.conflict import conflict
-from ninefold.reasoner.explain import explain
-from ninefold.reasoner.infer import infer
+from ninefold.reasoner.conflicts import conflict
+from ninefold.reasoner.enumeration import scenarios
+from ninefold.reasoner.explanation import explain
+from ninefold.reasoner.inference import infer
 from ninefold.reasoner.network import Network
+from ninefold.reasoner.questions import ask
 from ninefold.reasoner.relation import RCC8_OF_NAME, Relation
-from ninefold.reasoner.repair import repair
+from ninefold.reasoner.repairs import repair
 from ninefold.reasoner.scenario import Scenario
-from ninefold.reasoner.scenarios import scenarios
 
 
 def boxes(n: int, size: int, seed: int) -> Scenario:

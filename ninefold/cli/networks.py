@@ -54,8 +54,8 @@ def check(
 
     from ninefold.errors import BadInput
     from ninefold.io.files import published, refuse_existing
-    from ninefold.reasoner.check import Consistent, Inconsistent
-    from ninefold.reasoner.check import check as decide
+    from ninefold.reasoner.consistency import Consistent, Inconsistent
+    from ninefold.reasoner.consistency import check as decide
 
     if draw is not None:
         if draw.suffix.lower() != ".svg":
@@ -109,8 +109,8 @@ def prove(
 ) -> int:
     """Confirm, in plain Python and clause by clause, a proof that a network is inconsistent."""
     from ninefold.errors import BadInput
-    from ninefold.reasoner.prove import Proof
-    from ninefold.reasoner.prove import prove as confirm
+    from ninefold.reasoner.proofs import Proof
+    from ninefold.reasoner.proofs import prove as confirm
 
     network = _read(net, calculus)
     try:
@@ -145,9 +145,9 @@ def infer(
     as_json: AsJson = False,
 ) -> int:
     """Tell which relations are feasible between two entities."""
-    from ninefold.reasoner.conflict import Conflict
-    from ninefold.reasoner.explain import explain
-    from ninefold.reasoner.infer import infer as inference
+    from ninefold.reasoner.conflicts import Conflict
+    from ninefold.reasoner.explanation import explain
+    from ninefold.reasoner.inference import infer as inference
 
     network = _read(net, calculus)
     with progress(f"inferring from {net}"):
@@ -183,7 +183,7 @@ def ask(
     as_json: AsJson = False,
 ) -> int:
     """Tell whether a Boolean formula is entailed, possible or impossible, with evidence."""
-    from ninefold.reasoner.ask import ask as question
+    from ninefold.reasoner.questions import ask as question
 
     network = _read(net, calculus)
     with progress(f"asking {net}"):
@@ -211,7 +211,7 @@ def repair(
     net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
 ) -> int:
     """Find the cheapest statements to drop so that the rest is consistent."""
-    from ninefold.reasoner.repair import repair as cheapest
+    from ninefold.reasoner.repairs import repair as cheapest
 
     network = _read(net, calculus)
     with progress(f"repairing {net}"):
@@ -244,7 +244,7 @@ def scenarios(
     """List the scenarios of a network, and say how many there are."""
     from itertools import islice
 
-    from ninefold.reasoner.scenarios import scenarios as every
+    from ninefold.reasoner.enumeration import scenarios as every
 
     network = _read(net, calculus)
     with progress(f"listing the scenarios of {net}"):
@@ -333,8 +333,8 @@ def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tupl
 
 def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list[list[Any]], str]:
     """Return the statements of a conflict, and it and its derivation in words."""
-    from ninefold.reasoner.conflict import conflict
-    from ninefold.reasoner.explain import explain
+    from ninefold.reasoner.conflicts import conflict
+    from ninefold.reasoner.explanation import explain
 
     with progress("seeking a minimal conflict"):
         found = conflict(network, seed=seed, budget=budget)

@@ -13,8 +13,8 @@ geometry (`shapes`), and shows itself as SVG (`svg`, `labels`, `theme`) or on ma
 ``shapely.relate`` on given or sampled pairs (`sampling`); `verify_geometry` does so on geometry of the caller's. What
 disagrees is shrunk to a small map that still shows it (`shrink`).
 
-**Witnesses.** `realize` makes geometry that satisfies a scenario of RCC-8 or RCC-5, every pair confirmed by GEOS before it is
-returned; `witness_svg` draws it.
+**Witnesses.** `realize` makes geometry that satisfies a scenario of RCC-8 or RCC-5, every pair confirmed by GEOS before it
+is returned; `witness_svg` draws it.
 
 shapely, scipy and matplotlib are imported at first use.
 """

@@ -16,7 +16,7 @@ Examples
 --------
 >>> from ninefold.layout.realize import realize
 >>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.scenarios import scenarios
+>>> from ninefold.reasoner.enumeration import scenarios
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
 >>> shapes = realize(next(scenarios(net)))

@@ -9,7 +9,7 @@ Examples
 >>> from ninefold.layout.realize import realize
 >>> from ninefold.layout.witness import witness_svg
 >>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.scenarios import scenarios
+>>> from ninefold.reasoner.enumeration import scenarios
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
 >>> witness_svg(realize(next(scenarios(net)))).count("<path class=")

@@ -22,17 +22,17 @@ from .relate import relate
 from .relation import NAMES, RCC8_OF_NAME, Relation, converse_codes, de9im_strings, name_of_word, names_of
 
 if TYPE_CHECKING:
-    from .ask import Answer, ask
-    from .check import Consistent, Inconsistent, Unknown, Verdict, check
-    from .conflict import Conflict, conflict
-    from .explain import Explanation, explain
-    from .infer import Inference, MinimalNetwork, entails, infer, minimal
+    from .conflicts import Conflict, conflict
+    from .consistency import Consistent, Inconsistent, Unknown, Verdict, check
+    from .enumeration import Count, count, scenarios, some_scenario
+    from .explanation import Explanation, explain
+    from .inference import Inference, MinimalNetwork, entails, infer, minimal
     from .knowledge import Contradiction, KnowledgeBase
     from .network import Constraints, Network, Statement
-    from .prove import Proof, prove
-    from .repair import Repair, repair
+    from .proofs import Proof, prove
+    from .questions import Answer, ask
+    from .repairs import Repair, repair
     from .scenario import Scenario
-    from .scenarios import Count, count, scenarios, some_scenario
 
 __all__ = [
     "NAMES",
@@ -80,17 +80,17 @@ __all__ = [
 ]
 
 _HOME = {
-    "ask": ("Answer", "ask"),
-    "check": ("Consistent", "Inconsistent", "Unknown", "Verdict", "check"),
-    "conflict": ("Conflict", "conflict"),
-    "explain": ("Explanation", "explain"),
-    "infer": ("Inference", "MinimalNetwork", "entails", "infer", "minimal"),
+    "questions": ("Answer", "ask"),
+    "consistency": ("Consistent", "Inconsistent", "Unknown", "Verdict", "check"),
+    "conflicts": ("Conflict", "conflict"),
+    "explanation": ("Explanation", "explain"),
+    "inference": ("Inference", "MinimalNetwork", "entails", "infer", "minimal"),
     "knowledge": ("Contradiction", "KnowledgeBase"),
     "network": ("Constraints", "Network", "Statement"),
-    "prove": ("Proof", "prove"),
-    "repair": ("Repair", "repair"),
+    "proofs": ("Proof", "prove"),
+    "repairs": ("Repair", "repair"),
     "scenario": ("Scenario",),
-    "scenarios": ("Count", "count", "scenarios", "some_scenario"),
+    "enumeration": ("Count", "count", "scenarios", "some_scenario"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 
@@ -98,9 +98,7 @@ _MODULE = {name: module for module, names in _HOME.items() for name in names}
 def __getattr__(name: str) -> Any:
     if name not in _MODULE:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
-    globals()[name] = value  # the function, not the module of the same name that the import has just put here
-    return value
+    return getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
 
 
 def __dir__() -> list[str]:

@@ -31,13 +31,13 @@ from ninefold.encodings.rcc8 import RCC8
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping.sets import Region
 
-from .ask import Answer, ask
 from .bulk import relate_all
-from .check import check
-from .conflict import Conflict, conflict
-from .explain import explain
-from .infer import Inference, infer
+from .conflicts import Conflict, conflict
+from .consistency import check
+from .explanation import explain
+from .inference import Inference, infer
 from .network import Network, Statement
+from .questions import Answer, ask
 from .relation import RCC8_OF_NAME, names_of
 from .words import phrase
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     from ninefold.mapping import PlaneMap, Set
 
-    from .check import Consistent, Inconsistent, Unknown
+    from .consistency import Consistent, Inconsistent, Unknown
 
 __all__ = ["MAPPED", "Contradiction", "KnowledgeBase"]
 
@@ -230,11 +230,11 @@ class KnowledgeBase:
         return Contradiction(found, said, tuple(s for s in found if s.index < self._n_mapped))
 
     def infer(self, a: str, b: str, *, seed: int = 0) -> Inference:
-        """Return the relations of a to b that the map and what was said leave; see `ninefold.reasoner.infer`."""
+        """Return the relations of a to b that the map and what was said leave; see `ninefold.reasoner.inference`."""
         return infer(self.network, a, b, seed=seed)
 
     def ask(self, formula: str, *, seed: int = 0) -> Answer:
-        """Answer a Boolean question; see `ninefold.reasoner.ask`."""
+        """Answer a Boolean question; see `ninefold.reasoner.questions`."""
         return ask(self.network, formula, seed=seed)
 
     def __repr__(self) -> str:

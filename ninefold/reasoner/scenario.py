@@ -3,7 +3,7 @@
 Examples
 --------
 >>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.scenarios import scenarios
+>>> from ninefold.reasoner.enumeration import scenarios
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
 >>> _ = net.add("house", "garden", "meet")

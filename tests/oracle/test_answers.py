@@ -8,15 +8,15 @@ import pytest
 
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
 from ninefold.reasoner._sparse_trace import pairs_behind_refutation
-from ninefold.reasoner.ask import ask
 from ninefold.reasoner.closure import RecordedClosure
-from ninefold.reasoner.conflict import Conflict, conflict
-from ninefold.reasoner.explain import explain
-from ninefold.reasoner.infer import entails, infer, minimal
+from ninefold.reasoner.conflicts import Conflict, conflict
+from ninefold.reasoner.enumeration import count, scenarios, some_scenario
+from ninefold.reasoner.explanation import explain
+from ninefold.reasoner.inference import entails, infer, minimal
 from ninefold.reasoner.network import Network
+from ninefold.reasoner.questions import ask
 from ninefold.reasoner.refutation import refute
-from ninefold.reasoner.repair import repair
-from ninefold.reasoner.scenarios import count, scenarios, some_scenario
+from ninefold.reasoner.repairs import repair
 from tests.oracle.network_reference import Reference, random_network
 
 CALCULI = [RCC8, RCC5, POINT, ALLEN]

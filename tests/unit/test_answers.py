@@ -7,16 +7,16 @@ import pytest
 
 from ninefold.encodings import ALLEN, RCC5, RCC8
 from ninefold.errors import BadInput, UnknownName
-from ninefold.reasoner.ask import ask
 from ninefold.reasoner.closure import RecordedClosure
-from ninefold.reasoner.conflict import conflict
-from ninefold.reasoner.explain import explain
+from ninefold.reasoner.conflicts import conflict
+from ninefold.reasoner.enumeration import count, scenarios
+from ninefold.reasoner.explanation import explain
 from ninefold.reasoner.formula import parse
-from ninefold.reasoner.infer import SUPPOSED, entails, infer, minimal
+from ninefold.reasoner.inference import SUPPOSED, entails, infer, minimal
 from ninefold.reasoner.network import Network
-from ninefold.reasoner.repair import repair
+from ninefold.reasoner.questions import ask
+from ninefold.reasoner.repairs import repair
 from ninefold.reasoner.scenario import Scenario
-from ninefold.reasoner.scenarios import count, scenarios
 from ninefold.reasoner.words import phrase
 
 

@@ -7,7 +7,7 @@ import pytest
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping import PlaneMap
 from ninefold.reasoner import relate
-from ninefold.reasoner.check import Consistent, Inconsistent
+from ninefold.reasoner.consistency import Consistent, Inconsistent
 from ninefold.reasoner.knowledge import KnowledgeBase
 from ninefold.reasoner.network import Network
 

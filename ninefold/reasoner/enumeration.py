@@ -7,7 +7,7 @@ is never far.
 Examples
 --------
 >>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.scenarios import count, scenarios
+>>> from ninefold.reasoner.enumeration import count, scenarios
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside | coveredBy")
 >>> _ = net.add("house", "garden", "disjoint")
@@ -27,8 +27,8 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
-from .check import Inconsistent, check
 from .closure import RecordedClosure
+from .consistency import Inconsistent, check
 from .refutation import decides
 from .scenario import Scenario
 

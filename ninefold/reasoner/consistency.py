@@ -29,7 +29,7 @@ from ninefold.errors import BadInput
 from .engine.engine import Engine
 from .engine.graph import dense_frame, triangulated_frame
 from .engine.tables import Tables
-from .prove import Proof, digest_of
+from .proofs import Proof, digest_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from ninefold.encodings.calculus import Calculus
 
-    from .conflict import Conflict
+    from .conflicts import Conflict
     from .engine.graph import Frame
     from .network import Network
     from .scenario import Scenario
@@ -66,7 +66,7 @@ class Consistent:
     @property
     def scenario(self) -> Scenario:
         """One base relation for every pair of entities, all at once possible; made anew at each request, O(n^3)."""
-        from .scenarios import some_scenario
+        from .enumeration import some_scenario
 
         found = some_scenario(self.network, seed=self.seed)
         if found is None:
@@ -85,7 +85,7 @@ class Inconsistent:
     seed
         Of the search.
     proof
-        What `ninefold.reasoner.prove` confirms, if it was asked for.
+        What `ninefold.reasoner.proofs` confirms, if it was asked for.
     """
 
     network: Network = field(repr=False)
@@ -93,8 +93,8 @@ class Inconsistent:
     proof: Proof | None = field(default=None, repr=False)
 
     def conflict(self) -> Conflict:
-        """Return a minimal set of statements that cannot hold together; see `ninefold.reasoner.conflict`."""
-        from .conflict import conflict
+        """Return a minimal set of statements that cannot hold together; see `ninefold.reasoner.conflicts`."""
+        from .conflicts import conflict
 
         found = conflict(self.network, seed=self.seed)
         if found is None:
@@ -150,7 +150,7 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
 
     Examples
     --------
-    >>> from ninefold.reasoner.check import check
+    >>> from ninefold.reasoner.consistency import check
     >>> from ninefold.reasoner.network import Network
     >>> net = Network("rcc8")
     >>> _ = net.add("kitchen", "house", "inside")

@@ -5,7 +5,7 @@ does not see are proved by cases. A proof of more than `most` cases is not print
 
 Examples
 --------
->>> from ninefold.reasoner.explain import explain
+>>> from ninefold.reasoner.explanation import explain
 >>> from ninefold.reasoner.network import Network
 >>> net = Network("rcc8")
 >>> for a, words, b in [("kitchen", "inside", "house"), ("house", "disjoint", "garden"), ("kitchen", "meet", "garden")]:
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from ninefold.errors import BadInput
 
-from .conflict import Conflict, conflict
+from .conflicts import Conflict, conflict
 from .refutation import refute
 from .words import phrase
 

@@ -6,7 +6,7 @@ comes with scenarios, or with the statements that force it.
 
 Examples
 --------
->>> from ninefold.reasoner.ask import ask
+>>> from ninefold.reasoner.questions import ask
 >>> from ninefold.reasoner.network import Network
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
@@ -30,8 +30,8 @@ from typing import TYPE_CHECKING, Literal
 
 from ninefold.encodings.sat import open_solver
 
-from .check import Consistent, Inconsistent, check
-from .conflict import Shrinker
+from .conflicts import Shrinker
+from .consistency import Consistent, Inconsistent, check
 from .formula import Formula, parse
 
 if TYPE_CHECKING:

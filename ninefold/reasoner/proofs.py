@@ -106,7 +106,7 @@ def prove(net: Network, proof: Proof) -> None:
 
     Examples
     --------
-    >>> from ninefold.reasoner.check import check
+    >>> from ninefold.reasoner.consistency import check
     >>> from ninefold.reasoner.network import Network
     >>> net = Network("rcc8")
     >>> for a, b, r in [("kitchen", "house", "inside"), ("house", "garden", "disjoint"), ("kitchen", "garden", "meet")]:

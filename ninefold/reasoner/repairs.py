@@ -8,7 +8,7 @@ Examples
 --------
 >>> import math
 >>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.repair import repair
+>>> from ninefold.reasoner.repairs import repair
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside", weight=math.inf)
 >>> _ = net.add("house", "garden", "disjoint", label="deed", weight=2)
@@ -33,8 +33,8 @@ from typing import TYPE_CHECKING
 
 from ninefold.errors import BadInput
 
-from .check import Consistent, Inconsistent, check
-from .conflict import Conflict, Shrinker
+from .conflicts import Conflict, Shrinker
+from .consistency import Consistent, Inconsistent, check
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

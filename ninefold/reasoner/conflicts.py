@@ -7,7 +7,7 @@ statement is necessary.
 
 Examples
 --------
->>> from ninefold.reasoner.conflict import conflict
+>>> from ninefold.reasoner.conflicts import conflict
 >>> from ninefold.reasoner.network import Network
 >>> net = Network("rcc8")
 >>> for a, b, words in [("kitchen", "house", "inside"), ("attic", "house", "coveredBy"), ("house", "garden", "disjoint"),
@@ -29,8 +29,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ._sparse_trace import pairs_behind_refutation
-from .check import Consistent, Inconsistent, check
 from .closure import RecordedClosure
+from .consistency import Consistent, Inconsistent, check
 from .refutation import refute
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ asked for. An inconsistent network has no feasible relation and entails everythi
 
 Examples
 --------
->>> from ninefold.reasoner.explain import explain
->>> from ninefold.reasoner.infer import entails, infer
+>>> from ninefold.reasoner.explanation import explain
+>>> from ninefold.reasoner.inference import entails, infer
 >>> from ninefold.reasoner.network import Network
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
@@ -33,9 +33,9 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
-from .check import Consistent, Inconsistent, check
-from .conflict import Conflict, conflict
-from .scenarios import closed
+from .conflicts import Conflict, conflict
+from .consistency import Consistent, Inconsistent, check
+from .enumeration import closed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
