@@ -120,7 +120,7 @@ def test_bad_arguments():
     with pytest.raises(BadInput, match="positive"):
         check(net, budget=0)
     with pytest.raises(UnknownName, match="support"):
-        check(net, method="suport")
+        check(net, method="supports")
     with pytest.raises(UnknownName, match="cadical"):
         check(net, method="support:cadical")
     with pytest.raises(BadInput, match="keeps a proof"):
