@@ -122,11 +122,12 @@ def triangulated_frame(n: int, i: NDArray[Any], j: NDArray[Any], *, most: int) -
 
     Examples
     --------
-    A square gets one diagonal.
+    A ring of twenty gets a diagonal for each node that is eliminated, and all of them among the last few.
 
-    >>> frame = triangulated_frame(4, np.array([0, 1, 2, 3]), np.array([1, 2, 3, 0]), most=6)
-    >>> frame.n_edges
-    5
+    >>> ring = np.arange(20)
+    >>> frame = triangulated_frame(20, ring, (ring + 1) % 20, most=190)
+    >>> frame.n_edges, 20 - frame.core
+    (43, 6)
     """
     width = n_words(n)
     rows = np.zeros((n, width), dtype=np.uint64)
