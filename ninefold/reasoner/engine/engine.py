@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Engine"]
 
+_PLAIN_SLICE = 1_000
 _FIRST_SLICE = 20_000
 _SLICE_SECONDS = 0.05
 _KEEP_LBD = 2
@@ -39,6 +40,11 @@ class Engine:
         Breaks ties. The same arguments give the same run.
     log
         Receives each learned clause as an (L, 2) int32 array of (edge, mask), or None.
+
+    Attributes
+    ----------
+    compiling
+        Seconds spent on compiling kernels or loading compiled ones; deadlines are put off by as much.
     """
 
     def __init__(
@@ -56,6 +62,7 @@ class Engine:
         self._log = log
         self._slice = _FIRST_SLICE
         self._reductions = 0
+        self.compiling = 0.0
         self.state = new_state(tables, frame, arcs, masks, rng=np.random.default_rng(seed), logging=log is not None)
         self.state.reg[c.REDUCE_AT] = _REDUCE_FIRST
         self._form(state_labels)(self.state, arcs, np.asarray(masks, dtype=np.int16))
@@ -101,8 +108,13 @@ class Engine:
         while True:
             form = self._form(kernel)
             begin = time.perf_counter()
+            if form is not kernel.plain and not form.signatures:
+                # compiling, once a machine, or loading what was compiled, once a process, is no part of the budget
+                form(self.state, -1)
+                self.compiling += time.perf_counter() - begin
+                continue
             before = int(reg[c.TICKS])
-            status = form(self.state, before + self._slice)
+            status = form(self.state, before + (_PLAIN_SLICE if form is kernel.plain else self._slice))
             now = time.perf_counter()
             self._flush_log()
             match status:
@@ -120,10 +132,9 @@ class Engine:
                     self._reduce()
                 case _:
                     return int(status)
-            if deadline is not None and now > deadline:
+            if deadline is not None and now > deadline + self.compiling:
                 return None
             if form is not kernel.plain and status == c.PAUSED:
-                # the first compiled slice holds the compilation; slices then settle at a twentieth of a second
                 wanted = self._slice * _SLICE_SECONDS / max(now - begin, 1e-6)
                 self._slice = int(min(max(wanted, self._slice / 2, 1000), 2 * self._slice))
 

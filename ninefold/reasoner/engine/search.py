@@ -123,8 +123,8 @@ def propagate(s, limit):  # type: ignore[no-untyped-def]
 def recheck(s):  # type: ignore[no-untyped-def]
     """Queue every pair that is not universal, unless that was done since the last narrowing; tell whether it was.
 
-    In a dense frame pairs that follow exactly from two others are not queued (see `sweep`), so a fixpoint is known to be one
-    only after a round in which nothing changed.
+    In a dense frame pairs that follow exactly from two others are not queued (see `sweep`), so a fixpoint is known to be
+    one only after a round in which nothing changed.
     """
     reg = s.reg
     if reg[CORE] != 0 or reg[CHECKED] == reg[NARROWED]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .graph import Frame
     from .tables import Tables
 
-__all__ = ["State", "new_state"]
+__all__ = ["State", "new_state", "node_table"]
 
 _RING = 4096
 """Stated pairs up to which each split looks at all of them."""
@@ -103,10 +103,6 @@ def new_state(
     heads = np.arange(n_edges, n_edges + b + 1)
     edges[n_edges:, c.AHEAD] = edges[n_edges:, c.BEHIND] = heads
 
-    nodes = np.zeros((n + 1, c.NODE_COLUMNS), dtype=np.int32)
-    nodes[:, c.FIRST] = frame.first
-    np.cumsum(np.bincount(frame.upper, minlength=n), out=nodes[1:, c.ROOM])
-
     reg = np.zeros(c.N_REGISTERS, dtype=np.int64)
     reg[c.FULL], reg[c.N_BASES], reg[c.N_EDGES], reg[c.N_NODES] = tables.full, b, n_edges, n
     reg[c.CORE], reg[c.LOGGING], reg[c.CHECKED] = frame.core, logging, -1
@@ -130,7 +126,7 @@ def new_state(
         dom=np.full(2 * n_edges, tables.full, dtype=np.int16),
         edges=edges,
         marks=marks,
-        nodes=nodes,
+        nodes=node_table(frame),
         upper=frame.upper,
         planes=_open_planes(tables, n - frame.core),
         active=np.empty((frame.upper.size, 2), dtype=np.int32),
@@ -156,6 +152,14 @@ def new_state(
         split=tables.split,
         gates=tables.gates,
     )
+
+
+def node_table(frame: Frame) -> NDArray[np.int32]:
+    """Return the (n + 1, NODE_COLUMNS) table of a frame's nodes, none with a partner yet."""
+    nodes = np.zeros((frame.n + 1, c.NODE_COLUMNS), dtype=np.int32)
+    nodes[:, c.FIRST] = frame.first
+    np.cumsum(np.bincount(frame.upper, minlength=frame.n), out=nodes[1:, c.ROOM])
+    return nodes
 
 
 def _open_planes(tables: Tables, n: int) -> NDArray[np.uint64]:

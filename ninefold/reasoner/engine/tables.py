@@ -28,6 +28,7 @@ MOST_BASES = 14
 """Most base relations the engine takes: its tables have a row for every relation."""
 
 _BLOCK = 7  # bits of a half above eight base relations
+_NEVER = 1 << MOST_BASES  # a hull that lies in no label
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +66,21 @@ class Tables:
         """Mask of the universal relation."""
         return len(self.converse) - 1
 
+    def compose_bases(self) -> NDArray[np.int16]:
+        """Return the (b, b) composition of base relations."""
+        one = 1 << np.arange(self.n_bases)
+        if len(self.compose) == 1:
+            return np.ascontiguousarray(self.compose[0][np.ix_(one, one)])
+        r, s = one[:, np.newaxis], one
+        half = (1 << _BLOCK) - 1
+        low_r, high_r, low_s, high_s = r & half, r >> _BLOCK, s & half, s >> _BLOCK
+        parts = self.compose
+        low, high = parts[0, low_r, low_s] | parts[1, low_r, high_s], parts[2, high_r, low_s] | parts[3, high_r, high_s]
+        whole: NDArray[np.int16] = low | high
+        return whole
+
     @classmethod
-    def of(cls, calculus: Calculus, tractable: NDArray[np.bool_] | None = None) -> Tables:
+    def of(cls, calculus: Calculus, tractable: NDArray[np.bool_] | None = None, *, atomic: bool = False) -> Tables:
         """Tabulate a calculus.
 
         Parameters
@@ -74,6 +88,13 @@ class Tables:
         tractable
             (2^b,) bool, the subclass for which closure decides, closed under intersection and with every base relation;
             by default the base relations alone.
+        atomic
+            Count a pair as settled only by a base relation, whatever its label.
+
+        Raises
+        ------
+        TooLarge
+            More than `MOST_BASES` base relations.
         """
         b = calculus.n_bases
         if b > MOST_BASES:
@@ -83,7 +104,8 @@ class Tables:
         converse = np.zeros(1 << b, dtype=np.int16)
         for k, c in enumerate(calculus.base_converse.tolist()):
             converse[1 << k : 2 << k] = converse[: 1 << k] | np.int16(1 << c)
-        return cls.from_arrays(converse, calculus.base_composition.astype(np.int16), calculus.identity, tractable)
+        base = calculus.base_composition.astype(np.int16)
+        return cls.from_arrays(converse, base, calculus.identity, tractable, atomic=atomic)
 
     @classmethod
     def from_arrays(
@@ -92,12 +114,16 @@ class Tables:
         base_composition: NDArray[np.int16],
         identity: int,
         tractable: NDArray[np.bool_] | None = None,
+        *,
+        atomic: bool = False,
     ) -> Tables:
         """Tabulate from the (2^b,) converses and the (b, b) composition of base relations; see `of`."""
         b = len(base_composition)
         size = np.array([mask.bit_count() for mask in range(1 << b)], dtype=np.int16)
         if tractable is None:
             tractable = atomic_subclass(b)
+        if atomic:
+            tractable = size <= 1
         right = _unions(base_composition)  # right[k, S] = base k ; S
         return cls(
             n_bases=b,
@@ -105,7 +131,7 @@ class Tables:
             converse=converse,
             size=size,
             compose=_blocks(right),
-            hull=_hulls(tractable, b),
+            hull=np.where(size > 1, _NEVER, np.arange(1 << b)).astype(np.int16) if atomic else _hulls(tractable, b),
             split=_splits(tractable, size, b),
             gates=_gates(_unions(base_composition.T)),
         )
