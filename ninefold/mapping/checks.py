@@ -19,7 +19,17 @@ if TYPE_CHECKING:
 
     from .names import Names
 
-__all__ = ["Derived", "Walks", "component_walks", "derive", "face_permutation", "first_darts", "outer_dart"]
+__all__ = [
+    "Derived",
+    "Walks",
+    "component_walks",
+    "components_without_tethers",
+    "derive",
+    "face_permutation",
+    "first_darts",
+    "outer_dart",
+    "strip_tethers",
+]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +117,28 @@ def strip_tethers(next_ccw: NDArray[np.int32], tether: NDArray[np.bool_]) -> NDA
             stripped[before], previous[after] = after, before
             stripped[d] = previous[d] = d
     return stripped
+
+
+def components_without_tethers(
+    tail: NDArray[np.int32], next_ccw: NDArray[np.int32], tether: NDArray[np.bool_], n_vertices: int
+) -> NDArray[np.int32]:
+    """Return the component of each vertex once tethers are gone, (V,) int32.
+
+    Raises
+    ------
+    BadInput
+        If the tethers do not join the components like a tree.
+    """
+    real = np.flatnonzero(~np.repeat(tether, 2))[::-1]
+    first = np.full(n_vertices, -1, np.int32)
+    first[tail[real]] = real
+    forest = _orbits.spanning_forest.for_work(tail.size)
+    _, component, count = forest(tail, strip_tethers(next_ccw, tether), first)
+    if count - 1 != int(tether.sum()):
+        raise BadInput(
+            f"{int(tether.sum())} tethers for {count} components: tethers must be bridges, one fewer than components"
+        )
+    return np.asarray(component, dtype=np.int32)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

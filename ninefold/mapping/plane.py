@@ -168,7 +168,7 @@ class PlaneMap:
             )
         components = derived.component
         if tether.any():
-            components = _components_without(tail, tether, vertex_names.size)
+            components = checks.components_without_tethers(tail, next_ccw, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
         found = (derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
@@ -485,21 +485,6 @@ def _angles(
         raise BadInput("heading and turn must be finite radians")
     head -= TAU * np.round(head / TAU)
     return head, turns
-
-
-def _components_without(tail: NDArray[np.int32], tether: NDArray[np.bool_], n: int) -> NDArray[np.int32]:
-    """Component of each vertex once tethers are gone; they must have joined the components like a tree."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    real = np.flatnonzero(~tether)
-    links = coo_array((np.ones(real.size, np.int8), (tail[2 * real], tail[2 * real + 1])), shape=(n, n))
-    count, component = connected_components(links, directed=False)
-    if count - 1 != int(tether.sum()):
-        raise BadInput(
-            f"{int(tether.sum())} tethers for {count} components: tethers must be bridges, one fewer than components"
-        )
-    return np.asarray(component, dtype=np.int32)
 
 
 def _outer(
