@@ -1,6 +1,6 @@
 """Kernels that triangulate a simple connected plane map by edges inside its own faces.
 
-Both kernels work in place on arrays with room for the darts to come. The new edge of a corner cut goes from the tail of
+The kernels work in place on arrays with room for the darts to come. The new edge of a corner cut goes from the tail of
 face dart ``p`` to the head of ``d = next_face(p)``: dart x is put after p, its twin y after the face dart that follows d.
 The triangle p, d, y is cut off; x replaces p, d on the face that remains.
 """
@@ -12,6 +12,25 @@ import numpy as np
 from ninefold._kernels import kernel
 
 __all__ = ["close_faces", "fan_faces"]
+
+
+@kernel(inline="always")
+def join_corners(tail, after, before, p, q, used):  # type: ignore[no-untyped-def]
+    """Add an edge, darts used and used + 1, from the corner after dart p to the corner after dart q."""
+    x = used
+    y = used + 1
+    tail[x] = tail[p]
+    tail[y] = tail[q]
+    f = after[p]
+    after[p] = x
+    before[x] = p
+    after[x] = f
+    before[f] = x
+    f = after[q]
+    after[q] = y
+    before[y] = q
+    after[y] = f
+    before[f] = y
 
 
 @kernel
@@ -36,23 +55,9 @@ def close_faces(tail, after, before, n_vertices, used):  # type: ignore[no-untyp
                 seen[tail[d]] = s
                 p = d
             else:
-                e = before[d ^ 1]
-                x = used
-                y = used + 1
+                join_corners(tail, after, before, p, before[d ^ 1], used)
+                p = used
                 used += 2
-                tail[x] = tail[p]
-                tail[y] = tail[e]
-                f = after[p]
-                after[p] = x
-                before[x] = p
-                after[x] = f
-                before[f] = x
-                f = after[e]
-                after[e] = y
-                before[y] = e
-                after[y] = f
-                before[f] = y
-                p = x
             d = before[p ^ 1]
     return used
 
@@ -101,24 +106,11 @@ def fan_faces(tail, after, before, degree, used):  # type: ignore[no-untyped-def
                 a = b
                 b = c
                 c = before[b ^ 1]
-            x = used
-            y = used + 1
-            used += 2
-            tail[x] = tail[a]
-            tail[y] = tail[c]
+            join_corners(tail, after, before, a, c, used)
             degree[tail[a]] += 1
             degree[tail[c]] += 1
-            f = after[a]
-            after[a] = x
-            before[x] = a
-            after[x] = f
-            before[f] = x
-            f = after[c]
-            after[c] = y
-            before[y] = c
-            after[y] = f
-            before[f] = y
-            a = x
+            a = used
+            used += 2
             b = c
             k -= 1
     return used
