@@ -32,6 +32,14 @@ def root_of(parent, i):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def join_parts(parent, i, j):  # type: ignore[no-untyped-def]
+    """Put i and j into one part; the lower representative stands for both."""
+    a = root_of(parent, i)
+    b = root_of(parent, j)
+    parent[max(a, b)] = min(a, b)
+
+
+@kernel
 def below(rank, chunk):  # type: ignore[no-untyped-def]
     """Mask of the ranks below `rank` that fall into a chunk of 64."""
     r = rank - 64 * chunk
@@ -116,9 +124,7 @@ def region_stars(darts, offset, tail, rank, spokes, cell_start, number_of, room)
                     sectors[i + c] ^= below(r, c)
                 curve[i + (r >> 6)] |= np.uint64(1) << np.uint64(r & 63)
                 if arrives:
-                    a = root_of(parent, leaving)
-                    b = root_of(parent, i)
-                    parent[max(a, b)] = min(a, b)
+                    join_parts(parent, leaving, i)
                 leaving = i
         for i in range(begin, end):
             v = owner[i]
@@ -165,9 +171,7 @@ def line_stars(edges, offset, tail, rank, cell_start, number_of, first, room):  
                     flags[i + c] ^= np.uint64(1)
                 flags[i] |= np.uint64(2)
                 if side:
-                    a = root_of(parent, other)
-                    b = root_of(parent, i)
-                    parent[max(a, b)] = min(a, b)
+                    join_parts(parent, other, i)
                 other = i
         n_parts = number_parts(begin, end, parent, part, seed, part_seed, n_parts)
         start[s + 1] = end
