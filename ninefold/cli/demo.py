@@ -24,7 +24,7 @@ def demo(
     """Let a robot walk a district of Helsinki, map it from headings, and check every relation against the real streets."""
     start = time.perf_counter()
     with progress("loading"):
-        from ninefold.io.demo import run_demo
+        from ._demonstration import run_demo
 
     with progress("exploring, mapping and comparing"):
         report = run_demo(out, seed=seed, pairs=pairs, say=note if as_json else print)

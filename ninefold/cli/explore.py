@@ -32,14 +32,14 @@ def explore(
     """Simulate a robot that explores a source depth-first, every place and every way, and write its walk log."""
     from ninefold.errors import BadInput
     from ninefold.io.files import refuse_existing
-    from ninefold.io.sources import read_source
-    from ninefold.io.walks import write_walk
+    from ninefold.io.sources.reading import read_source
+    from ninefold.io.walks.json_lines import write_walk
 
     refuse_existing(out, force=force)
     if out.exists() and not source.startswith("sample:") and out.samefile(source):
         raise BadInput(f"{out}: the source itself, which the walk would replace; give -o another name")
     with progress(f"reading {source}"):
-        from ninefold.mapping.simulated import explore as walk_in
+        from ninefold.mapping.robot.simulated import explore as walk_in
 
         found = read_source(source)
         if drop_crossing:

@@ -11,8 +11,8 @@ from ._output import note, notes, print_json, progress
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ninefold.reasoner.network import Network, Statement
-    from ninefold.reasoner.scenario import Scenario
+    from ninefold.reasoner.networks.network import Network, Statement
+    from ninefold.reasoner.networks.scenario import Scenario
 
 __all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 
@@ -54,8 +54,8 @@ def check(
 
     from ninefold.errors import BadInput
     from ninefold.io.files import published, refuse_existing
-    from ninefold.reasoner.consistency import Consistent, Inconsistent
-    from ninefold.reasoner.consistency import check as decide
+    from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
+    from ninefold.reasoner.networks.consistency import check as decide
 
     if draw is not None:
         if draw.suffix.lower() != ".svg":
@@ -109,8 +109,8 @@ def prove(
 ) -> int:
     """Confirm, in plain Python and clause by clause, a proof that a network is inconsistent."""
     from ninefold.errors import BadInput
-    from ninefold.reasoner.proofs import Proof
-    from ninefold.reasoner.proofs import prove as confirm
+    from ninefold.reasoner.networks.proofs import Proof
+    from ninefold.reasoner.networks.proofs import prove as confirm
 
     network = _read(net, calculus)
     try:
@@ -145,9 +145,9 @@ def infer(
     as_json: AsJson = False,
 ) -> int:
     """Tell which relations are feasible between two entities."""
-    from ninefold.reasoner.conflicts import Conflict
-    from ninefold.reasoner.explanation import explain
-    from ninefold.reasoner.inference import infer as inference
+    from ninefold.reasoner.networks.conflicts import Conflict
+    from ninefold.reasoner.networks.explanation import explain
+    from ninefold.reasoner.networks.inference import infer as inference
 
     network = _read(net, calculus)
     with progress(f"inferring from {net}"):
@@ -183,7 +183,7 @@ def ask(
     as_json: AsJson = False,
 ) -> int:
     """Tell whether a Boolean formula is entailed, possible or impossible, with evidence."""
-    from ninefold.reasoner.questions import ask as question
+    from ninefold.reasoner.networks.questions import ask as question
 
     network = _read(net, calculus)
     with progress(f"asking {net}"):
@@ -211,7 +211,7 @@ def repair(
     net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
 ) -> int:
     """Find the cheapest statements to drop so that the rest is consistent."""
-    from ninefold.reasoner.repairs import repair as cheapest
+    from ninefold.reasoner.networks.repairs import repair as cheapest
 
     network = _read(net, calculus)
     with progress(f"repairing {net}"):
@@ -244,7 +244,7 @@ def scenarios(
     """List the scenarios of a network, and say how many there are."""
     from itertools import islice
 
-    from ninefold.reasoner.enumeration import scenarios as every
+    from ninefold.reasoner.networks.enumeration import scenarios as every
 
     network = _read(net, calculus)
     with progress(f"listing the scenarios of {net}"):
@@ -282,7 +282,7 @@ def compose(
 
 
 def _read(net: Path, calculus: str | None) -> "Network":
-    from ninefold.io.networks import load_network
+    from ninefold.io.networks.network_file import load_network
 
     with progress(f"reading {net}"):
         found = load_network(net, calculus=calculus)
@@ -316,7 +316,7 @@ def _stated(network: "Network", statements: "Iterable[Statement]") -> list[list[
 
 
 def _spoken(network: "Network", s: "Statement") -> str:
-    from ninefold.reasoner.words import phrase
+    from ninefold.reasoner.networks.words import phrase
 
     label = f" ({s.label})" if s.label else ""
     return f"{phrase(network.calculus, s.a, s.mask, s.b)}{label}"
@@ -333,8 +333,8 @@ def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tupl
 
 def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list[list[Any]], str]:
     """Return the statements of a conflict, and it and its derivation in words."""
-    from ninefold.reasoner.conflicts import conflict
-    from ninefold.reasoner.explanation import explain
+    from ninefold.reasoner.networks.conflicts import conflict
+    from ninefold.reasoner.networks.explanation import explain
 
     with progress("seeking a minimal conflict"):
         found = conflict(network, seed=seed, budget=budget)
@@ -347,7 +347,7 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
 
 def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
     from ninefold.io.files import published
-    from ninefold.layout.realize import realize
+    from ninefold.layout.realization import realize
     from ninefold.layout.witness import witness_svg
 
     with progress("drawing"), published(out, force=force) as file:

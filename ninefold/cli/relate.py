@@ -55,7 +55,7 @@ def relate(
 
 
 def _one(atlas: "Atlas", x: str, y: str, *, as_json: bool) -> int:
-    from ninefold.reasoner.relate import relate as relation_of
+    from ninefold.reasoner.sets.relate import relate as relation_of
 
     relation = relation_of(atlas.parse(x), atlas.parse(y))
     matrix = relation.matrix.astype(int).tolist()

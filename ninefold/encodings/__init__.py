@@ -34,8 +34,9 @@ False
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .calculus import Calculus
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from .composition import SatComposition, compose_by_sat
     from .direct import encode_direct
     from .encoding import Encoding
-    from .library import CALCULI, calculus_named
+    from .library import ALLEN, CALCULI, POINT, calculus_named
     from .orders import ORDERS, Triangulation, triangulate
     from .rcc8 import RCC5, RCC8
     from .registry import ENCODINGS, encode
@@ -52,9 +53,6 @@ if TYPE_CHECKING:
     from .subclasses import C8, H5, H8, NP8, Q8, Subclass
     from .support import encode_support
     from .triangulated import encode_triangulated
-
-    ALLEN: Calculus
-    POINT: Calculus
 
 __all__ = [
     "ALLEN",
@@ -89,45 +87,22 @@ __all__ = [
     "triangulate",
 ]
 
-_HOME = {
-    "C8": "subclasses",
-    "CALCULI": "library",
-    "Calculus": "calculus",
-    "DEFAULT_SOLVER": "sat",
-    "ENCODINGS": "registry",
-    "Encoding": "encoding",
-    "H5": "subclasses",
-    "H8": "subclasses",
-    "NP8": "subclasses",
-    "ORDERS": "orders",
-    "Q8": "subclasses",
-    "RCC5": "rcc8",
-    "RCC8": "rcc8",
-    "SOLVERS": "sat",
-    "SatComposition": "composition",
-    "SatSolver": "sat",
-    "Subclass": "subclasses",
-    "Triangulation": "orders",
-    "calculus_named": "library",
-    "compose_by_sat": "composition",
-    "encode": "registry",
-    "encode_cells": "cells",
-    "encode_direct": "direct",
-    "encode_splitting": "splitting",
-    "encode_support": "support",
-    "encode_triangulated": "triangulated",
-    "open_solver": "sat",
-    "triangulate": "orders",
-}
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-    if name in ("ALLEN", "POINT"):
-        return import_module(f"{__name__}.library").calculus_named(name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "calculus": ("Calculus",),
+        "cells": ("encode_cells",),
+        "composition": ("SatComposition", "compose_by_sat"),
+        "direct": ("encode_direct",),
+        "encoding": ("Encoding",),
+        "library": ("ALLEN", "CALCULI", "POINT", "calculus_named"),
+        "orders": ("ORDERS", "Triangulation", "triangulate"),
+        "rcc8": ("RCC5", "RCC8"),
+        "registry": ("ENCODINGS", "encode"),
+        "sat": ("DEFAULT_SOLVER", "SOLVERS", "SatSolver", "open_solver"),
+        "splitting": ("encode_splitting",),
+        "subclasses": ("C8", "H5", "H8", "NP8", "Q8", "Subclass"),
+        "support": ("encode_support",),
+        "triangulated": ("encode_triangulated",),
+    },
+)

@@ -16,12 +16,17 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
+from typing import TYPE_CHECKING
 
 from ninefold.errors import UnknownName
 
 from .calculus import Calculus
 
-__all__ = ["CALCULI", "allen", "calculus_named", "point"]
+__all__ = ["ALLEN", "CALCULI", "POINT", "allen", "calculus_named", "point"]
+
+if TYPE_CHECKING:
+    ALLEN: Calculus
+    POINT: Calculus
 
 CALCULI = ("rcc8", "rcc5", "point", "allen")
 """Names that `calculus_named` knows."""
@@ -51,6 +56,13 @@ def calculus_named(name: str) -> Calculus:
             return allen()
         case _:
             raise UnknownName("calculus", name, CALCULI)
+
+
+def __getattr__(name: str) -> Calculus:
+    """Read the calculi that are files when they are first asked for."""
+    if name in ("ALLEN", "POINT"):
+        return calculus_named(name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def point() -> Calculus:

@@ -1,11 +1,12 @@
-"""Every outside format, one module each; coordinates may enter here, and nothing below keeps them.
+"""Every outside format, a folder a family; coordinates may enter here, and nothing below keeps them.
 
 **In.** `read_source` gives a `Source`: vertices, polylines and notes, with shapely geometry at hand; GeoJSON lines in the
-base install, and the bundled `samples`. `read_walk` reads what a robot sensed. `read_map` takes any of these, or an atlas,
-and gives the plane map.
+base install, and the bundled `samples` (`ninefold.io.sources`). `read_walk` reads what a robot sensed (`ninefold.io.walks`),
+`read_network` a set of declared relations (`ninefold.io.networks`). `read_map` takes any source, walk or atlas and gives the
+plane map (`ninefold.io.formats`).
 
-**Kept.** `Atlas` is one SQLite file with a walk, its map, named sets, declared relations and where all that came from.
-An event that was appended is there after a crash.
+**Kept.** `Atlas` is one SQLite file with a walk, its map, named sets, declared relations and where all that came from
+(`ninefold.io.atlas`). An event that was appended is there after a crash.
 
 **Out.** `relations.write_relations` writes tables of relations.
 
@@ -15,17 +16,19 @@ nothing half-written is ever seen. The names load when they are first used.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ninefold._lazy import attach
 
 if TYPE_CHECKING:
-    from . import samples
-    from .atlas import Atlas
+    from .atlas.atlas import Atlas
+    from .atlas.records import Provenance, Statement
     from .formats import read_map
-    from .networks import read_network, write_network
-    from .records import Provenance, Statement
-    from .sources import Source, read_source
-    from .walks import iter_events, read_walk, write_walk
+    from .networks.network_file import read_network, write_network
+    from .sources import samples
+    from .sources.reading import read_source
+    from .sources.source import Source
+    from .walks.json_lines import iter_events, read_walk, write_walk
 
 __all__ = [
     "Atlas",
@@ -42,28 +45,16 @@ __all__ = [
     "write_walk",
 ]
 
-_HOME = {
-    "Atlas": "atlas",
-    "Provenance": "records",
-    "Source": "sources",
-    "Statement": "records",
-    "iter_events": "walks",
-    "read_map": "formats",
-    "read_network": "networks",
-    "read_source": "sources",
-    "read_walk": "walks",
-    "write_network": "networks",
-    "write_walk": "walks",
-}
-
-
-def __getattr__(name: str) -> Any:
-    if name == "samples":
-        return import_module(f"{__name__}.samples")
-    if name in _HOME:
-        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "atlas.atlas": ("Atlas",),
+        "atlas.records": ("Provenance", "Statement"),
+        "formats": ("read_map",),
+        "networks.network_file": ("read_network", "write_network"),
+        "sources.reading": ("read_source",),
+        "sources.source": ("Source",),
+        "walks.json_lines": ("iter_events", "read_walk", "write_walk"),
+    },
+    parts=("sources.samples",),
+)

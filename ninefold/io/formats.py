@@ -79,17 +79,17 @@ def read_map(path: str | PathLike[str], *, tolerance: float | None = None) -> Pl
     """
     match format_of(path):
         case "atlas":
-            from .atlas import Atlas
+            from .atlas.atlas import Atlas
 
             with Atlas.open(path, writable=False) as atlas:
                 return atlas.plane
         case "walk":
-            from ninefold.mapping.mapper import build
+            from ninefold.mapping.robot.mapper import build
 
-            from .walks import read_walk
+            from .walks.json_lines import read_walk
 
             return build(read_walk(path, tolerance=tolerance))
         case "source":
-            from .sources import read_source
+            from .sources.reading import read_source
 
             return read_source(path).to_map()

@@ -16,28 +16,35 @@ disagrees is shrunk to a small map that still shows it (`shrink`).
 **Witnesses.** `realize` makes geometry that satisfies a scenario of RCC-8 or RCC-5, every pair confirmed by GEOS before it
 is returned; `witness_svg` draws it.
 
-shapely, scipy and matplotlib are imported at first use.
+The layouts are in `ninefold.layout.methods`. Names load when they are first used; shapely, scipy and matplotlib likewise.
 """
 
 from __future__ import annotations
 
-from .draw import LAYOUTS, draw
-from .drawing import Drawing
-from .oracle import Disagreement, Report, verify, verify_geometry
-from .planarity import drawing_problems
-from .realize import realize
-from .sampling import random_sets, sample_pairs
-from .schnyder import schnyder
-from .sheet import side_by_side
-from .shrink import shrink
-from .tutte import tutte
-from .witness import witness_svg
+from typing import TYPE_CHECKING
+
+from ninefold._lazy import attach
+
+if TYPE_CHECKING:
+    from .drawing import Drawing
+    from .layouts import LAYOUTS, draw
+    from .methods.schnyder import schnyder
+    from .methods.tutte import tutte
+    from .oracle import Disagreement, Report, verify, verify_geometry
+    from .planarity import drawing_problems
+    from .realization import realize
+    from .sampling import random_sets, sample_pairs
+    from .sheet import side_by_side
+    from .shrinking import shrink
+    from .truth import TrueShapes
+    from .witness import witness_svg
 
 __all__ = [
     "LAYOUTS",
     "Disagreement",
     "Drawing",
     "Report",
+    "TrueShapes",
     "draw",
     "drawing_problems",
     "random_sets",
@@ -51,3 +58,21 @@ __all__ = [
     "verify_geometry",
     "witness_svg",
 ]
+
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "drawing": ("Drawing",),
+        "layouts": ("LAYOUTS", "draw"),
+        "methods.schnyder": ("schnyder",),
+        "methods.tutte": ("tutte",),
+        "oracle": ("Disagreement", "Report", "verify", "verify_geometry"),
+        "planarity": ("drawing_problems",),
+        "realization": ("realize",),
+        "sampling": ("random_sets", "sample_pairs"),
+        "sheet": ("side_by_side",),
+        "shrinking": ("shrink",),
+        "truth": ("TrueShapes",),
+        "witness": ("witness_svg",),
+    },
+)

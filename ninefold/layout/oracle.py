@@ -19,10 +19,10 @@ from ninefold.mapping import Line, Point, Region
 from ninefold.mapping.sets import same_map
 from ninefold.reasoner import relate
 
-from .draw import draw
+from .layouts import draw
 from .planarity import drawing_problems
 from .sampling import sample_pairs
-from .shrink import shrink
+from .shrinking import shrink
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -6,10 +6,10 @@ and where there are few, also at its largest piece.
 
 Examples
 --------
->>> from ninefold.layout.realize import realize
+>>> from ninefold.layout.realization import realize
 >>> from ninefold.layout.witness import witness_svg
->>> from ninefold.reasoner.network import Network
->>> from ninefold.reasoner.enumeration import scenarios
+>>> from ninefold.reasoner.networks.network import Network
+>>> from ninefold.reasoner.networks.enumeration import scenarios
 >>> net = Network("rcc8")
 >>> _ = net.add("kitchen", "house", "inside")
 >>> witness_svg(realize(next(scenarios(net)))).count("<path class=")

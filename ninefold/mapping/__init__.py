@@ -5,23 +5,30 @@ and the evidence (`heading`, `turn`). Dart ``d`` is half of edge ``d // 2``; ``t
 counter-clockwise and a face lies on the left of its darts.
 
 **The builders.** `PlaneMap.from_darts`, `from_rotation`, `from_geometry` and `from_networkx` check everything and return a
-whole map or raise. `Mapper` grows one event by event, and `build` runs it over a `Walk`.
+whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
+a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces.
 
-Nothing here imports shapely, and only `from_geometry` and the simulated world ever see a coordinate.
+Nothing here imports shapely, and only `from_geometry` and the simulated world ever see a coordinate. The names load when
+they are first used.
 """
 
 from __future__ import annotations
 
-from .graphs import bridges, cut_vertices, shortest_path
-from .heading import Heading, circular_mean, unwrap, wrap
-from .mapper import Closure, Mapper, build
-from .names import Names
-from .plane import PlaneMap
-from .sets import Line, Point, Region, Set
-from .simulated import Exploration, SimulatedWorld, explore
-from .walk import Event, Samples, Visit, Walk, WalkHeader
+from typing import TYPE_CHECKING
+
+from ninefold._lazy import attach
+
+if TYPE_CHECKING:
+    from .graphs import bridges, cut_vertices, shortest_path
+    from .heading import Heading, circular_mean, unwrap, wrap
+    from .names import Names
+    from .plane import PlaneMap
+    from .robot.mapper import Closure, Mapper, build
+    from .robot.simulated import Exploration, SimulatedWorld, explore
+    from .robot.walk import Event, Samples, Visit, Walk, WalkHeader
+    from .sets import Line, Point, Region, Set
 
 __all__ = [
     "Closure",
@@ -49,3 +56,17 @@ __all__ = [
     "unwrap",
     "wrap",
 ]
+
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "graphs": ("bridges", "cut_vertices", "shortest_path"),
+        "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
+        "names": ("Names",),
+        "plane": ("PlaneMap",),
+        "robot.mapper": ("Closure", "Mapper", "build"),
+        "robot.simulated": ("Exploration", "SimulatedWorld", "explore"),
+        "robot.walk": ("Event", "Samples", "Visit", "Walk", "WalkHeader"),
+        "sets": ("Line", "Point", "Region", "Set"),
+    },
+)

@@ -1,4 +1,4 @@
-"""Plane maps from coordinates: the one place in `ninefold.mapping` that sees them.
+"""Dart arrays from coordinates: the one place in `ninefold.mapping` that sees them.
 
 Coordinates give three things and are then dropped: the heading at both ends of every edge and its net rotation, hence the
 rotation system and the outer face; and, where the source has several components, which face hosts which component, found by
@@ -7,7 +7,7 @@ looking west from each component's westernmost point. A component is tied to its
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,69 +23,63 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .plane import PlaneMap
-
-__all__ = ["from_geometry"]
+__all__ = ["GeometricDarts", "bearings", "checked_edges", "checked_points", "darts_of_geometry", "rotation_by_heading"]
 
 _CLOSEST = 1e-12
 
 
-def from_geometry(
+class GeometricDarts(NamedTuple):
+    """What coordinates say of a map, before it is checked.
+
+    Attributes
+    ----------
+    tail, next_ccw
+        (2E,) int32, tethers included.
+    tether
+        (E,) bool.
+    heading, turn
+        (2E,) and (E,) float64 radians, NaN on tethers.
+    vertex_names, edge_names
+        Labels.
+    derived
+        Orbits found on the way, or None where tethers were added after that.
+    """
+
+    tail: NDArray[np.int32]
+    next_ccw: NDArray[np.int32]
+    tether: NDArray[np.bool_]
+    heading: NDArray[np.float64]
+    turn: NDArray[np.float64]
+    vertex_names: Names
+    edge_names: Names
+    derived: checks.Derived | None
+
+
+def darts_of_geometry(
     points: ArrayLike,
     edges: ArrayLike,
     paths: Sequence[ArrayLike | None] | None = None,
     *,
     vertex_names: Iterable[str | int] | None = None,
     edge_names: Iterable[str | int] | None = None,
-) -> PlaneMap:
-    """Make a plane map from vertices with coordinates and edges that do not cross.
-
-    Parameters
-    ----------
-    points
-        (V, 2) coordinates, x east and y north.
-    edges
-        (E, 2) integers, the rows of `points` an edge joins; parallel edges and loops need `paths`.
-    paths
-        Per edge None for a straight edge, or a (k, 2) polyline that includes both ends.
-    vertex_names, edge_names
-        Labels; row numbers if left out.
-
-    Returns
-    -------
-    PlaneMap
-        With headings and turns. Coordinates are not kept.
+) -> GeometricDarts:
+    """Read vertices with coordinates, and edges that do not cross, into dart arrays; see `PlaneMap.from_geometry`.
 
     Raises
     ------
     BadInput
         For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
-    NotPlane
-        Where Euler's formula or the turning numbers show that edges cross. Crossings that leave both whole, such as a dead
-        end across a street, are not searched for.
-
-    Notes
-    -----
-    Complexity O(V + E + sum over vertices of degree log degree), and one ray per component.
-
-    Examples
-    --------
-    >>> from ninefold.mapping import PlaneMap
-    >>> PlaneMap.from_geometry([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
-    PlaneMap(3 vertices, 3 edges, 2 faces)
     """
-    from .plane import PlaneMap
-
-    xy, ends = _points(points), _edges(edges)
+    xy, ends = checked_points(points), checked_edges(edges)
     n_vertices, n_edges = len(xy), len(ends)
     if n_edges and (int(ends.min()) < 0 or int(ends.max()) >= n_vertices):
         wrong = int(ends.min()) if int(ends.min()) < 0 else int(ends.max())
         raise BadInput(f"edges must hold rows of points, 0 to {n_vertices - 1}; found {wrong}")
     v_names = Names("vertex", n_vertices, vertex_names)
     e_names = Names("edge", n_edges, edge_names)
-    heading, turn, line, start = _bearings(xy, ends, paths, e_names)
+    heading, turn, line, start = bearings(xy, ends, paths, e_names)
     tail = np.ascontiguousarray(ends.reshape(-1), dtype=np.int32)
-    next_ccw = _rotation(tail, heading, n_vertices, v_names, e_names)
+    next_ccw = rotation_by_heading(tail, heading, n_vertices, v_names, e_names)
     tether = np.zeros(n_edges, np.bool_)
     derived: checks.Derived | None = checks.derive(tail, next_ccw, v_names, e_names)
     if derived is not None and derived.n_components > 1:
@@ -97,10 +91,11 @@ def from_geometry(
         turn = np.concatenate([turn, np.full(extra, np.nan)])
         e_names = _with_tether_names(e_names, extra)
         derived = None
-    return PlaneMap._checked(tail, next_ccw, None, tether, (heading, turn), v_names, e_names, derived)
+    return GeometricDarts(tail, next_ccw, tether, heading, turn, v_names, e_names, derived)
 
 
-def _points(points: ArrayLike) -> NDArray[np.float64]:
+def checked_points(points: ArrayLike) -> NDArray[np.float64]:
+    """Return (V, 2) finite coordinates, or say why they are none."""
     try:
         xy = np.asarray(points, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -112,7 +107,8 @@ def _points(points: ArrayLike) -> NDArray[np.float64]:
     return xy
 
 
-def _edges(edges: ArrayLike) -> NDArray[np.int64]:
+def checked_edges(edges: ArrayLike) -> NDArray[np.int64]:
+    """Return (E, 2) int64 rows of points, or say why they are none; their range is not looked at."""
     try:
         array = np.asarray(edges)
     except ValueError:
@@ -124,7 +120,7 @@ def _edges(edges: ArrayLike) -> NDArray[np.int64]:
     return array.astype(np.int64)
 
 
-def _bearings(
+def bearings(
     xy: NDArray[np.float64],
     ends: NDArray[np.int64],
     paths: Sequence[ArrayLike | None] | None,
@@ -200,9 +196,10 @@ def _no_length(name: str) -> BadInput:
     return BadInput(f"edge {name!r} has no length; drop it, merge its ends, or give a loop its path")
 
 
-def _rotation(
+def rotation_by_heading(
     tail: NDArray[np.int32], heading: NDArray[np.float64], n_vertices: int, v_names: Names, e_names: Names
 ) -> NDArray[np.int32]:
+    """Return (2E,) int32, the next dart counter-clockwise by heading; two darts in one direction are an error."""
     next_ccw, closest, at = _orbits.sort_rotation.for_work(tail.size)(tail, heading, n_vertices)
     if closest < _CLOSEST:
         other = int(next_ccw[at])

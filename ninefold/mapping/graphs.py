@@ -13,40 +13,22 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
-from .rotation import from_rotation
+from .select import darts_between
 from .sets import Line, Point, same_map
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from .plane import PlaneMap
 
-__all__ = ["bridges", "cut_vertices", "from_networkx", "shortest_path", "to_networkx"]
+__all__ = ["bridges", "cut_vertices", "rotation_of_embedding", "shortest_path", "to_networkx"]
 
 
-def from_networkx(graph: Any, *, outer: Sequence[Any] | None = None) -> PlaneMap:
-    """Make a plane map from a ``networkx.PlanarEmbedding``.
-
-    Parameters
-    ----------
-    graph
-        A connected embedding; nodes become names by ``str``.
-    outer
-        A dart ``(u, v)`` with the outer face on its left, counter-clockwise sense. May be left out for a tree.
+def rotation_of_embedding(graph: Any) -> dict[str | int, list[str]]:
+    """Return the neighbours of every node of a ``networkx.PlanarEmbedding``, counter-clockwise, nodes named by ``str``.
 
     Raises
     ------
     BadInput
-        For a graph that is no embedding (a planar graph has many; ``networkx.check_planarity`` finds one), or one in
-        several components, since an embedding does not say which face hosts which.
-
-    Examples
-    --------
-    >>> import networkx as nx
-    >>> from ninefold.mapping import PlaneMap
-    >>> _, embedding = nx.check_planarity(nx.cycle_graph(4))
-    >>> PlaneMap.from_networkx(embedding, outer=(1, 0))
-    PlaneMap(4 vertices, 4 edges, 2 faces)
+        For a graph that is no embedding, or nodes of equal names.
     """
     import networkx as nx
 
@@ -58,8 +40,7 @@ def from_networkx(graph: Any, *, outer: Sequence[Any] | None = None) -> PlaneMap
     rotation: dict[str | int, list[str]] = {str(v): [str(w) for w in graph.neighbors_cw_order(v)][::-1] for v in graph}
     if len(rotation) != len(graph):
         raise BadInput("two nodes have the same name once they are read as strings; relabel the graph")
-    start = None if outer is None else [str(name) for name in outer]
-    return from_rotation(rotation, outer=start)
+    return rotation
 
 
 def to_networkx(plane: PlaneMap, kind: str = "multigraph") -> Any:
@@ -120,8 +101,6 @@ def shortest_path(source: Point, target: Point) -> Line:
         way = nx.bidirectional_shortest_path(to_networkx(plane), source.name, target.name)
     except nx.NetworkXNoPath:
         raise BadInput(f"no path joins {source.name!r} and {target.name!r}: they are in separate components") from None
-    from .select import darts_between
-
     rows = [plane.vertex_names.row(name) for name in way]
     darts = tuple(min(darts_between(plane, u, v)) for u, v in pairwise(rows))
     return Line(plane, tuple(sorted(d >> 1 for d in darts)), darts)

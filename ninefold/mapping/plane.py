@@ -15,18 +15,19 @@ import numpy as np
 
 from ninefold.errors import BadInput, NotPlane
 
-from . import checks
+from . import checks, select
 from .containment import ContainmentIndex
-from .heading import TAU
+from .heading import TAU, Heading
 from .names import Names
+from .rotation import read_rotation
+from .sets import Point
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .heading import Heading
-    from .sets import Line, Point, Region
+    from .sets import Line, Region
 
 __all__ = ["PlaneMap"]
 
@@ -184,10 +185,46 @@ class PlaneMap:
         *,
         outer: Sequence[str | int] | int | None = None,
     ) -> PlaneMap:
-        """Make a map from each vertex's neighbours in counter-clockwise order; see `ninefold.mapping.rotation`."""
-        from .rotation import from_rotation
+        """Make a plane map from each vertex's neighbours, counter-clockwise.
 
-        return from_rotation(rotation, outer=outer)
+        Parameters
+        ----------
+        rotation
+            Vertex name to its neighbours in counter-clockwise order. Where edges are parallel or loops, an entry is a pair
+            ``(neighbour, edge name)``; a loop has two entries at its vertex, of which the first is its forward dart.
+        outer
+            A dart with the outer face on its left: ``("a", "b")`` leaves a for b; ``("a", "b", "e1")`` names the edge too;
+            an int is a dart number, and edge e has darts 2e (from where it is mentioned first) and 2e + 1. May be left out
+            when there is one face.
+
+        Raises
+        ------
+        BadInput, AmbiguousDart, UnknownName
+            For an edge mentioned once or three times, an unnamed parallel edge, an unknown neighbour.
+        NotPlane
+            With the genus and a shortest offending part.
+
+        Notes
+        -----
+        Edges are numbered, and if unnamed named, in the order of first mention. Complexity O(V + E).
+
+        Examples
+        --------
+        >>> from ninefold.mapping import PlaneMap
+        >>> PlaneMap.from_rotation({"a": ["b"], "b": ["a", "c"], "c": ["b"]})
+        PlaneMap(3 vertices, 2 edges, 1 face)
+        >>> PlaneMap.from_rotation({"a": [("a", "ring"), ("a", "ring")]}, outer=1)
+        PlaneMap(1 vertex, 1 edge, 2 faces)
+        """
+        darts = read_rotation(rotation, outer=outer)
+        return cls.from_darts(
+            darts.tail,
+            darts.next_ccw,
+            darts.outer,
+            n_vertices=len(darts.vertex_names),
+            vertex_names=darts.vertex_names,
+            edge_names=darts.edge_names,
+        )
 
     @classmethod
     def from_geometry(
@@ -199,17 +236,78 @@ class PlaneMap:
         vertex_names: Iterable[str | int] | None = None,
         edge_names: Iterable[str | int] | None = None,
     ) -> PlaneMap:
-        """Make a map from coordinates, which are then dropped; see `ninefold.mapping.geometry`."""
-        from .geometry import from_geometry
+        """Make a plane map from vertices with coordinates and edges that do not cross.
 
-        return from_geometry(points, edges, paths, vertex_names=vertex_names, edge_names=edge_names)
+        Parameters
+        ----------
+        points
+            (V, 2) coordinates, x east and y north.
+        edges
+            (E, 2) integers, the rows of `points` an edge joins; parallel edges and loops need `paths`.
+        paths
+            Per edge None for a straight edge, or a (k, 2) polyline that includes both ends.
+        vertex_names, edge_names
+            Labels; row numbers if left out.
+
+        Returns
+        -------
+        PlaneMap
+            With headings and turns. Coordinates are not kept.
+
+        Raises
+        ------
+        BadInput
+            For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+        NotPlane
+            Where Euler's formula or the turning numbers show that edges cross. Crossings that leave both whole, such as a
+            dead end across a street, are not searched for.
+
+        Notes
+        -----
+        Complexity O(V + E + sum over vertices of degree log degree), and one ray per component.
+
+        Examples
+        --------
+        >>> from ninefold.mapping import PlaneMap
+        >>> PlaneMap.from_geometry([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
+        PlaneMap(3 vertices, 3 edges, 2 faces)
+        """
+        from .geometry import darts_of_geometry
+
+        tail, next_ccw, tether, heading, turn, v_names, e_names, derived = darts_of_geometry(
+            points, edges, paths, vertex_names=vertex_names, edge_names=edge_names
+        )
+        return cls._checked(tail, next_ccw, None, tether, (heading, turn), v_names, e_names, derived)
 
     @classmethod
     def from_networkx(cls, graph: Any, *, outer: Sequence[Any] | None = None) -> PlaneMap:
-        """Make a map from a ``networkx.PlanarEmbedding`` (clockwise, converted); see `ninefold.mapping.graphs`."""
-        from .graphs import from_networkx
+        """Make a map from a ``networkx.PlanarEmbedding``, which is clockwise and converted here.
 
-        return from_networkx(graph, outer=outer)
+        Parameters
+        ----------
+        graph
+            A connected embedding; nodes become names by ``str``.
+        outer
+            A dart ``(u, v)`` with the outer face on its left, counter-clockwise sense. May be left out for a tree.
+
+        Raises
+        ------
+        BadInput
+            For a graph that is no embedding (a planar graph has many; ``networkx.check_planarity`` finds one), or one in
+            several components, since an embedding does not say which face hosts which.
+
+        Examples
+        --------
+        >>> import networkx as nx
+        >>> from ninefold.mapping import PlaneMap
+        >>> _, embedding = nx.check_planarity(nx.cycle_graph(4))
+        >>> PlaneMap.from_networkx(embedding, outer=(1, 0))
+        PlaneMap(4 vertices, 4 edges, 2 faces)
+        """
+        from .graphs import rotation_of_embedding
+
+        start = None if outer is None else [str(name) for name in outer]
+        return cls.from_rotation(rotation_of_embedding(graph), outer=start)
 
     def to_networkx(self, kind: str = "multigraph") -> Any:
         """Export as ``"multigraph"`` or ``"embedding"``; see `ninefold.mapping.graphs`."""
@@ -312,56 +410,38 @@ class PlaneMap:
 
     def vertex(self, name: str | int) -> Point:
         """Return the vertex of that name as a `Point`."""
-        from .sets import Point
-
         return Point(self, self.vertex_names.row(name))
 
     def edge(self, *names: str | int) -> Line:
         """Return one edge: ``edge("e7")`` or ``edge("@e7")`` by its own name, ``edge("v1", "v3")`` by its ends."""
-        from . import select
-
         return select.edge(self, names)
 
     def path(self, steps: Iterable[str | int]) -> Line:
         """Return the path along vertices and ``@edge`` steps; no edge twice, and it may close."""
-        from . import select
-
         return select.path(self, steps)
 
     def line(self, edges: Iterable[str | int]) -> Line:
         """Return any set of edges, given by name, as one `Line`: branching, closed or in pieces."""
-        from . import select
-
         return select.line(self, edges)
 
     def cycle(self, steps: Iterable[str | int] | None = None, *, edges: Iterable[str | int] | None = None) -> Region:
         """Return the interior of a simple cycle, given in either direction by vertices and ``@edge`` steps, or by edges."""
-        from . import select
-
         return select.cycle(self, steps, edges)
 
     def face(self, face: int) -> Region:
         """Return one bounded face, by its number in `face_of`, as a `Region`."""
-        from . import select
-
         return select.region(self, [face])
 
     def region(self, faces: Iterable[int]) -> Region:
         """Return the union of bounded faces as a regular closed `Region`; holes and several parts are allowed."""
-        from . import select
-
         return select.region(self, faces)
 
     def parse(self, text: str) -> Point | Line | Region:
         """Return the set that a text names, such as ``cycle:v0,v1,v8,v7`` or ``edge:@e7``; see `select.parse`."""
-        from . import select
-
         return select.parse(self, text)
 
     def heading_of(self, dart: int) -> Heading:
         """Return the heading on leaving along a dart."""
-        from .heading import Heading
-
         if self.heading is None or np.isnan(self.heading[dart]):
             raise BadInput(f"dart {dart} has no heading: the map was made without, or it is a tether")
         return Heading(float(self.heading[dart]))

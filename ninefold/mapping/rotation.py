@@ -1,9 +1,9 @@
-"""Plane maps from rotation systems written by hand."""
+"""Rotation systems written by hand, read into dart arrays."""
 
 from __future__ import annotations
 
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -12,49 +12,43 @@ from ninefold.errors import AmbiguousDart, BadInput, UnknownName
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from .plane import PlaneMap
+    from numpy.typing import NDArray
 
-__all__ = ["from_rotation"]
+__all__ = ["DartArrays", "read_rotation"]
 
 Entry = tuple[str, str | None]
 
 
-def from_rotation(
-    rotation: Mapping[str | int, Sequence[Any]], *, outer: Sequence[str | int] | int | None = None
-) -> PlaneMap:
-    """Make a plane map from each vertex's neighbours, counter-clockwise.
+class DartArrays(NamedTuple):
+    """What `PlaneMap.from_darts` makes a map of.
 
-    Parameters
+    Attributes
     ----------
-    rotation
-        Vertex name to its neighbours in counter-clockwise order. Where edges are parallel or loops, an entry is a pair
-        ``(neighbour, edge name)``; a loop has two entries at its vertex, of which the first is its forward dart.
+    tail, next_ccw
+        (2E,) int64: start vertex and next dart counter-clockwise around it.
     outer
-        A dart with the outer face on its left: ``("a", "b")`` leaves a for b; ``("a", "b", "e1")`` names the edge too; an
-        int is a dart number, and edge e has darts 2e (from where it is mentioned first) and 2e + 1. May be left out when
-        there is one face.
+        A dart with the outer face on its left, or None.
+    vertex_names, edge_names
+        Labels; None for edges named by their row.
+    """
+
+    tail: NDArray[np.int64]
+    next_ccw: NDArray[np.int64]
+    outer: int | None
+    vertex_names: list[str]
+    edge_names: list[str] | None
+
+
+def read_rotation(
+    rotation: Mapping[str | int, Sequence[Any]], *, outer: Sequence[str | int] | int | None = None
+) -> DartArrays:
+    """Read each vertex's neighbours, counter-clockwise, into dart arrays; see `PlaneMap.from_rotation`.
 
     Raises
     ------
     BadInput, AmbiguousDart, UnknownName
         For an edge mentioned once or three times, an unnamed parallel edge, an unknown neighbour.
-    NotPlane
-        With the genus and a shortest offending part.
-
-    Notes
-    -----
-    Edges are numbered, and if unnamed named, in the order of first mention. Complexity O(V + E).
-
-    Examples
-    --------
-    >>> from ninefold.mapping import PlaneMap
-    >>> PlaneMap.from_rotation({"a": ["b"], "b": ["a", "c"], "c": ["b"]})
-    PlaneMap(3 vertices, 2 edges, 1 face)
-    >>> PlaneMap.from_rotation({"a": [("a", "ring"), ("a", "ring")]}, outer=1)
-    PlaneMap(1 vertex, 1 edge, 2 faces)
     """
-    from .plane import PlaneMap
-
     names = [str(vertex) for vertex in rotation]
     row = {name: at for at, name in enumerate(names)}
     if len(row) != len(names):
@@ -97,14 +91,7 @@ def from_rotation(
             next_ccw[dart] = star[(at + 1) % len(star)]
     edge_names = _edge_names(labels)
     start = _outer_dart(outer, row, tail, edge_names)
-    return PlaneMap.from_darts(
-        np.array(tail, np.int64),
-        next_ccw,
-        start,
-        n_vertices=len(names),
-        vertex_names=names,
-        edge_names=edge_names,
-    )
+    return DartArrays(np.array(tail, np.int64), next_ccw, start, names, edge_names)
 
 
 def _entry(entry: Any) -> Entry:

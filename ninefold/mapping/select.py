@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .plane import PlaneMap
     from .sets import Set
 
-__all__ = ["cycle", "edge", "line", "parse", "path", "region"]
+__all__ = ["cycle", "darts_between", "edge", "line", "parse", "path", "region"]
 
 
 def edge(plane: PlaneMap, names: Sequence[str | int]) -> Line:
@@ -164,6 +164,7 @@ def _edge_row(plane: PlaneMap, name: str | int) -> int:
 
 
 def darts_between(plane: PlaneMap, u: int, v: int) -> list[int]:
+    """Return the darts from vertex u to vertex v (numbers), tethers left out; O(smaller degree)."""
     darts = plane.darts_at(u) if plane.spokes[u] <= plane.spokes[v] else [d ^ 1 for d in plane.darts_at(v)]
     return [d for d in darts if plane.tail[d] == u and plane.tail[d ^ 1] == v and not plane.tether[d >> 1]]
 

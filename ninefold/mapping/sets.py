@@ -20,6 +20,8 @@ import numpy as np
 from ninefold.errors import BadInput, DifferentMaps, EmptySet
 
 from .containment import ends_of_numbers, numbers_of_ends
+from .split import faces_beside
+from .trails import trails
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -118,8 +120,6 @@ class Line:
     @cached_property
     def trails(self) -> tuple[tuple[int, ...], ...]:
         """The fewest walks, as darts, that cover the line; see `ninefold.mapping.trails`."""
-        from .trails import trails
-
         return trails(self)
 
     @property
@@ -264,15 +264,11 @@ class Region:
 
     def left_of(self, path: Line) -> Region:
         """Return the part of the region on the left of a path that splits it."""
-        from .split import split
-
-        return split(self, path)[0]
+        return Region.from_faces(same_map(self, path), faces_beside(self, path)[0])
 
     def right_of(self, path: Line) -> Region:
         """Return the part of the region on the right of a path that splits it."""
-        from .split import split
-
-        return split(self, path)[1]
+        return Region.from_faces(same_map(self, path), faces_beside(self, path)[1])
 
     @property
     def text(self) -> str:

@@ -8,16 +8,14 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
-from .sets import Region, same_map
-
 if TYPE_CHECKING:
-    from .sets import Line
+    from .sets import Line, Region
 
-__all__ = ["split"]
+__all__ = ["faces_beside"]
 
 
-def split(region: Region, path: Line) -> tuple[Region, Region]:
-    """Return the parts of a region on the left and on the right of a path.
+def faces_beside(region: Region, path: Line) -> tuple[list[int], list[int]]:
+    """Return the faces of a region on the left and on the right of a path of the same map.
 
     Faces of the region are joined across every edge that is neither on the path nor on the boundary; the left part holds
     the joined groups that touch the path from the left. Parts of the region that the path does not enter belong to
@@ -28,14 +26,12 @@ def split(region: Region, path: Line) -> tuple[Region, Region]:
     BadInput
         If the line has no direction (make it with `PlaneMap.path`), or the path does not split the region: some face is on
         both sides, or one side has none.
-    DifferentMaps
-        If region and path belong to two maps.
 
     Notes
     -----
     Complexity O(E).
     """
-    plane = same_map(region, path)
+    plane = region.plane
     if path.darts is None:
         raise BadInput(f"{path!r} has no direction, so no left and right; make it with plane.path([...])")
     from scipy.sparse import coo_array
@@ -55,5 +51,5 @@ def split(region: Region, path: Line) -> tuple[Region, Region]:
     on_left, on_right = (np.unique(group[side[inside[side]]]) for side in (plane.face_of[darts], plane.face_of[darts ^ 1]))
     if not (on_left.size and on_right.size) or np.intersect1d(on_left, on_right).size:
         raise BadInput(f"{path!r} does not split {region!r}: it must run through it from boundary to boundary")
-    parts = [np.flatnonzero(inside & np.isin(group, chosen)).tolist() for chosen in (on_left, on_right)]
-    return Region.from_faces(plane, parts[0]), Region.from_faces(plane, parts[1])
+    of_left, of_right = (np.flatnonzero(inside & np.isin(group, chosen)).tolist() for chosen in (on_left, on_right))
+    return of_left, of_right

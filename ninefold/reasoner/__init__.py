@@ -1,38 +1,41 @@
 """Answers: exact relations between the sets of a map, and what follows from relations that were only declared.
 
-**On a map.** `relate` tells how one set lies to another, `relate_pairs` and `relate_all` do so in bulk, and
-`containment_tree` orders regions by what is inside what. A `Relation` is a value: a matrix, a DE-9IM string and a word.
+**On a map** (`ninefold.reasoner.sets`). `relate` tells how one set lies to another, `relate_pairs` and `relate_all` do so in
+bulk, and `containment_tree` orders regions by what is inside what. A `Relation` is a value: a matrix, a DE-9IM string and a
+word.
 
-**On declared relations.** A `Network` collects statements. `check` decides whether they can all be true, with a scenario or
-a proof (`prove` confirms it); `conflict` finds a minimal set that cannot, `explain` says why in words; `infer`, `minimal`
-and `entails` tell what follows, `ask` answers Boolean questions, `repair` finds the cheapest statements to drop, `scenarios`
-and `count` enumerate. A `KnowledgeBase` joins mapped sets and declared statements in one network.
+**On declared relations** (`ninefold.reasoner.networks`). A `Network` collects statements. `check` decides whether they can
+all be true, with a scenario or a proof (`prove` confirms it); `conflict` finds a minimal set that cannot, `explain` says why
+in words; `infer`, `minimal` and `entails` tell what follows, `ask` answers Boolean questions, `repair` finds the cheapest
+statements to drop, `scenarios` and `count` enumerate. The search behind them is `ninefold.reasoner.engine`.
 
-The second half loads when it is first used, so that relating two sets starts fast.
+A `KnowledgeBase` is the one bridge between the two: mapped sets and declared statements in one network.
+
+The names load when they are first used.
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .bulk import SetTable, relate_all, relate_pairs
-from .nesting import containment_tree
-from .relate import relate
-from .relation import NAMES, RCC8_OF_NAME, Relation, converse_codes, de9im_strings, name_of_word, names_of
+from ninefold._lazy import attach
 
 if TYPE_CHECKING:
-    from .conflicts import Conflict, conflict
-    from .consistency import Consistent, Inconsistent, Unknown, Verdict, check
-    from .enumeration import Count, count, scenarios, some_scenario
-    from .explanation import Explanation, explain
-    from .inference import Inference, MinimalNetwork, entails, infer, minimal
     from .knowledge import Contradiction, KnowledgeBase
-    from .network import Constraints, Network, Statement
-    from .proofs import Proof, prove
-    from .questions import Answer, ask
-    from .repairs import Repair, repair
-    from .scenario import Scenario
+    from .networks.conflicts import Conflict, conflict
+    from .networks.consistency import Consistent, Inconsistent, Unknown, Verdict, check
+    from .networks.enumeration import Count, count, scenarios, some_scenario
+    from .networks.explanation import Explanation, explain
+    from .networks.inference import Inference, MinimalNetwork, entails, infer, minimal
+    from .networks.network import Constraints, Network, Statement
+    from .networks.proofs import Proof, prove
+    from .networks.questions import Answer, ask
+    from .networks.repairs import Repair, repair
+    from .networks.scenario import Scenario
+    from .sets.bulk import SetTable, relate_all, relate_pairs
+    from .sets.nesting import containment_tree
+    from .sets.relate import relate
+    from .sets.relation import NAMES, RCC8_OF_NAME, Relation, converse_codes, de9im_strings, name_of_word, names_of
 
 __all__ = [
     "NAMES",
@@ -79,27 +82,31 @@ __all__ = [
     "some_scenario",
 ]
 
-_HOME = {
-    "questions": ("Answer", "ask"),
-    "consistency": ("Consistent", "Inconsistent", "Unknown", "Verdict", "check"),
-    "conflicts": ("Conflict", "conflict"),
-    "explanation": ("Explanation", "explain"),
-    "inference": ("Inference", "MinimalNetwork", "entails", "infer", "minimal"),
-    "knowledge": ("Contradiction", "KnowledgeBase"),
-    "network": ("Constraints", "Network", "Statement"),
-    "proofs": ("Proof", "prove"),
-    "repairs": ("Repair", "repair"),
-    "scenario": ("Scenario",),
-    "enumeration": ("Count", "count", "scenarios", "some_scenario"),
-}
-_MODULE = {name: module for module, names in _HOME.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _MODULE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "knowledge": ("Contradiction", "KnowledgeBase"),
+        "networks.conflicts": ("Conflict", "conflict"),
+        "networks.consistency": ("Consistent", "Inconsistent", "Unknown", "Verdict", "check"),
+        "networks.enumeration": ("Count", "count", "scenarios", "some_scenario"),
+        "networks.explanation": ("Explanation", "explain"),
+        "networks.inference": ("Inference", "MinimalNetwork", "entails", "infer", "minimal"),
+        "networks.network": ("Constraints", "Network", "Statement"),
+        "networks.proofs": ("Proof", "prove"),
+        "networks.questions": ("Answer", "ask"),
+        "networks.repairs": ("Repair", "repair"),
+        "networks.scenario": ("Scenario",),
+        "sets.bulk": ("SetTable", "relate_all", "relate_pairs"),
+        "sets.nesting": ("containment_tree",),
+        "sets.relate": ("relate",),
+        "sets.relation": (
+            "NAMES",
+            "RCC8_OF_NAME",
+            "Relation",
+            "converse_codes",
+            "de9im_strings",
+            "name_of_word",
+            "names_of",
+        ),
+    },
+)

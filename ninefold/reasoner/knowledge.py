@@ -31,22 +31,22 @@ from ninefold.encodings.rcc8 import RCC8
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping.sets import Region
 
-from .bulk import relate_all
-from .conflicts import Conflict, conflict
-from .consistency import check
-from .explanation import explain
-from .inference import Inference, infer
-from .network import Network, Statement
-from .questions import Answer, ask
-from .relation import RCC8_OF_NAME, names_of
-from .words import phrase
+from .networks.conflicts import Conflict, conflict
+from .networks.consistency import check
+from .networks.explanation import explain
+from .networks.inference import Inference, infer
+from .networks.network import Network, Statement
+from .networks.questions import Answer, ask
+from .networks.words import phrase
+from .sets.bulk import relate_all
+from .sets.relation import RCC8_OF_NAME, names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ninefold.mapping import PlaneMap, Set
 
-    from .consistency import Consistent, Inconsistent, Unknown
+    from .networks.consistency import Consistent, Inconsistent, Unknown
 
 __all__ = ["MAPPED", "Contradiction", "KnowledgeBase"]
 
@@ -230,11 +230,11 @@ class KnowledgeBase:
         return Contradiction(found, said, tuple(s for s in found if s.index < self._n_mapped))
 
     def infer(self, a: str, b: str, *, seed: int = 0) -> Inference:
-        """Return the relations of a to b that the map and what was said leave; see `ninefold.reasoner.inference`."""
+        """Return the relations of a to b that the map and what was said leave; see `ninefold.reasoner.infer`."""
         return infer(self.network, a, b, seed=seed)
 
     def ask(self, formula: str, *, seed: int = 0) -> Answer:
-        """Answer a Boolean question; see `ninefold.reasoner.questions`."""
+        """Answer a Boolean question; see `ninefold.reasoner.networks.questions`."""
         return ask(self.network, formula, seed=seed)
 
     def __repr__(self) -> str:

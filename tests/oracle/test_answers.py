@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
-from ninefold.reasoner._sparse_trace import pairs_behind_refutation
-from ninefold.reasoner.closure import RecordedClosure
-from ninefold.reasoner.conflicts import Conflict, conflict
-from ninefold.reasoner.enumeration import count, scenarios, some_scenario
-from ninefold.reasoner.explanation import explain
-from ninefold.reasoner.inference import entails, infer, minimal
-from ninefold.reasoner.network import Network
-from ninefold.reasoner.questions import ask
-from ninefold.reasoner.refutation import refute
-from ninefold.reasoner.repairs import repair
+from ninefold.reasoner.networks._sparse_trace import pairs_behind_refutation
+from ninefold.reasoner.networks.conflicts import Conflict, conflict
+from ninefold.reasoner.networks.derivation import RecordedClosure
+from ninefold.reasoner.networks.enumeration import count, scenarios, some_scenario
+from ninefold.reasoner.networks.explanation import explain
+from ninefold.reasoner.networks.inference import entails, infer, minimal
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.questions import ask
+from ninefold.reasoner.networks.refutation import refute
+from ninefold.reasoner.networks.repairs import repair
 from tests.oracle.network_reference import Reference, random_network
 
 CALCULI = [RCC8, RCC5, POINT, ALLEN]

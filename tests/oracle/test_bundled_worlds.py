@@ -7,9 +7,9 @@ import shapely
 from naive import de9im
 
 from ninefold.io import samples
-from ninefold.io.truth import TrueShapes
+from ninefold.layout.truth import TrueShapes
 from ninefold.mapping import Line, Point, Region, build
-from ninefold.mapping.simulated import explore
+from ninefold.mapping.robot.simulated import explore
 from ninefold.reasoner import relate
 
 SMALL = [name for name in samples.names() if name != "helsinki_district"]

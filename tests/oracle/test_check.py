@@ -9,13 +9,13 @@ import pytest
 
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
 from ninefold.errors import BadInput, UnknownName
-from ninefold.io.networks import read_network
-from ninefold.reasoner.consistency import Consistent, Inconsistent, Unknown, check
+from ninefold.io.networks.network_file import read_network
 from ninefold.reasoner.engine.engine import Engine
 from ninefold.reasoner.engine.graph import dense_frame, triangulated_frame
 from ninefold.reasoner.engine.tables import Tables
-from ninefold.reasoner.network import Network
-from ninefold.reasoner.proofs import Proof, prove
+from ninefold.reasoner.networks.consistency import Consistent, Inconsistent, Unknown, check
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.proofs import Proof, prove
 from tests.oracle.network_reference import Reference, random_network
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "networks"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from ninefold.encodings import RCC8, encode, open_solver
-from ninefold.io.networks import read_network
+from ninefold.io.networks.network_file import read_network
 from tests.oracle.network_reference import Reference
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "networks"

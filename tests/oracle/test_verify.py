@@ -11,7 +11,7 @@ from worlds import KINDS, world
 import ninefold.layout.oracle as oracle
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.layout import Drawing, draw, drawing_problems, schnyder, verify, verify_geometry
-from ninefold.layout.shrink import shrink, without_edges
+from ninefold.layout.shrinking import shrink, without_edges
 from ninefold.mapping import Line, PlaneMap, Point, Region
 from ninefold.reasoner import Relation, relate
 

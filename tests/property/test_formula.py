@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from ninefold.encodings import ALLEN, RCC8, open_solver
 from ninefold.errors import BadInput, NinefoldError, UnknownName
-from ninefold.reasoner.formula import parse
-from ninefold.reasoner.network import Network
+from ninefold.reasoner.networks.formula import parse
+from ninefold.reasoner.networks.network import Network
 
 
 def network():

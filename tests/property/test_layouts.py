@@ -14,12 +14,12 @@ from scipy.spatial import Delaunay
 from worlds import KINDS, world
 
 from ninefold.layout import Drawing, draw, drawing_problems, schnyder, tutte
-from ninefold.layout._augment import close_faces, fan_faces
-from ninefold.layout._realizer import grid_coordinates, shell
+from ninefold.layout.methods._augment import close_faces, fan_faces
+from ninefold.layout.methods._realizer import grid_coordinates, shell
+from ninefold.layout.methods.subdivide import make_simple
+from ninefold.layout.methods.triangulate import biconnect, triangulate
 from ninefold.layout.planarity import crossing_pieces, orientation
 from ninefold.layout.shapes import region_rings
-from ninefold.layout.subdivide import make_simple
-from ninefold.layout.triangulate import biconnect, triangulate
 from ninefold.mapping import PlaneMap, Region
 from ninefold.mapping.checks import face_permutation
 

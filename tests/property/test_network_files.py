@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from ninefold.encodings import POINT, RCC8
 from ninefold.errors import NinefoldError
-from ninefold.io.networks import NETWORK_FORMATS, load_network, network_from_text, network_to_text
-from ninefold.reasoner.network import Network
+from ninefold.io.networks.network_file import NETWORK_FORMATS, load_network, network_from_text, network_to_text
+from ninefold.reasoner.networks.network import Network
 
 names = st.text(st.characters(exclude_categories=("Cs",)), min_size=1, max_size=6).filter(str.strip)
 weights = st.none() | st.just(math.inf) | st.floats(min_value=0, allow_nan=False)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ninefold.errors import AtlasError, NinefoldError
 from ninefold.io import Atlas, read_map, samples
-from ninefold.io.geojson import parse_geojson
+from ninefold.io.sources.geojson import parse_geojson
 
 SLOW_OK = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -22,7 +22,7 @@ def good(tmp_path_factory):
     """A real atlas with every kind of content."""
     path = tmp_path_factory.mktemp("good") / "office.atlas"
     from ninefold.io import Provenance, Statement
-    from ninefold.mapping.simulated import explore
+    from ninefold.mapping.robot.simulated import explore
 
     walk = explore(samples.load("office").to_world(), seed=1).walk
     with Atlas.from_walk(walk, path, provenance=Provenance.of("test", "walk")) as atlas:

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from ninefold.encodings import POINT, RCC5, RCC8
 from ninefold.errors import BadInput
-from ninefold.layout.realize import realize
+from ninefold.layout.realization import realize
 from ninefold.layout.witness import witness_svg
-from ninefold.reasoner.enumeration import scenarios
-from ninefold.reasoner.network import Network
-from ninefold.reasoner.relation import RCC8_OF_NAME, Relation
-from ninefold.reasoner.scenario import Scenario
+from ninefold.reasoner.networks.enumeration import scenarios
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.scenario import Scenario
+from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
 from tests.oracle.network_reference import random_network
 
 PART = {"TPP": "PP", "NTPP": "PP", "TPPi": "PPi", "NTPPi": "PPi", "DC": "DR", "EC": "DR"}

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ninefold.errors import NinefoldError
-from ninefold.io.walks import iter_events, read_header, read_walk, write_walk
+from ninefold.io.walks.json_lines import iter_events, read_header, read_walk, write_walk
 from ninefold.mapping import Heading, Mapper, Samples, Visit, Walk, WalkHeader
 
 yaws = st.floats(-20, 20)

@@ -7,17 +7,17 @@ import pytest
 
 from ninefold.encodings import ALLEN, RCC5, RCC8
 from ninefold.errors import BadInput, UnknownName
-from ninefold.reasoner.closure import RecordedClosure
-from ninefold.reasoner.conflicts import conflict
-from ninefold.reasoner.enumeration import count, scenarios
-from ninefold.reasoner.explanation import explain
-from ninefold.reasoner.formula import parse
-from ninefold.reasoner.inference import SUPPOSED, entails, infer, minimal
-from ninefold.reasoner.network import Network
-from ninefold.reasoner.questions import ask
-from ninefold.reasoner.repairs import repair
-from ninefold.reasoner.scenario import Scenario
-from ninefold.reasoner.words import phrase
+from ninefold.reasoner.networks.conflicts import conflict
+from ninefold.reasoner.networks.derivation import RecordedClosure
+from ninefold.reasoner.networks.enumeration import count, scenarios
+from ninefold.reasoner.networks.explanation import explain
+from ninefold.reasoner.networks.formula import parse
+from ninefold.reasoner.networks.inference import SUPPOSED, entails, infer, minimal
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.questions import ask
+from ninefold.reasoner.networks.repairs import repair
+from ninefold.reasoner.networks.scenario import Scenario
+from ninefold.reasoner.networks.words import phrase
 
 
 def network(*statements, calculus="rcc8"):

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from ninefold.errors import AtlasError, BadInput, DifferentMaps, NinefoldError, UnknownName, WalkError
-from ninefold.io import Atlas, Provenance, Statement, _schema, samples
+from ninefold.io import Atlas, Provenance, Statement, samples
+from ninefold.io.atlas import _schema
 from ninefold.mapping import Heading, PlaneMap, Samples, Visit, Walk, WalkHeader, build
-from ninefold.mapping.simulated import explore
+from ninefold.mapping.robot.simulated import explore
 
 EAST, NORTH, SOUTHWEST = (Samples.of(Heading.from_bearing(b)) for b in (90, 0, 225))
 TRIANGLE = (Visit("a"), EAST, Visit("b"), NORTH, Visit("c"), SOUTHWEST, Visit("a"))

@@ -11,10 +11,10 @@ import time
 import pytest
 
 from ninefold.io import Atlas, read_walk, samples
-from ninefold.io.walks import write_walk
+from ninefold.io.walks.json_lines import write_walk
 from ninefold.mapping import build
-from ninefold.mapping.mapper import Mapper
-from ninefold.mapping.simulated import explore
+from ninefold.mapping.robot.mapper import Mapper
+from ninefold.mapping.robot.simulated import explore
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is a Unix thing")
 

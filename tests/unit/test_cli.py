@@ -13,9 +13,10 @@ import time
 import pytest
 
 from ninefold import cli
+from ninefold.cli import _demonstration as demo
 from ninefold.cli import _output
 from ninefold.errors import WalkError
-from ninefold.io import Atlas, demo, read_walk, samples, write_walk
+from ninefold.io import Atlas, read_walk, samples, write_walk
 from ninefold.mapping import Visit, Walk, WalkHeader, build
 
 MODULE = [sys.executable, "-c", "from ninefold.cli import main; main()"]

@@ -10,7 +10,7 @@ import shapely
 from ninefold.errors import BadInput, DifferentMaps, MissingExtra, TooLarge
 from ninefold.layout import Drawing, draw, drawing_problems, schnyder, tutte
 from ninefold.layout.labels import place_labels, text_width
-from ninefold.layout.triangulate import check_size
+from ninefold.layout.methods.triangulate import check_size
 from ninefold.mapping import PlaneMap
 
 ONE = PlaneMap.from_darts([], [], n_vertices=1)

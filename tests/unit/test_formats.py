@@ -10,8 +10,8 @@ import ninefold as nf
 from ninefold.errors import BadInput
 from ninefold.io import Atlas, read_source, samples
 from ninefold.io.formats import format_of
-from ninefold.io.walks import write_walk
-from ninefold.mapping.simulated import explore
+from ninefold.io.walks.json_lines import write_walk
+from ninefold.mapping.robot.simulated import explore
 
 
 def test_one_call_reads_every_format(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 
 from ninefold.errors import BadInput
 from ninefold.io import read_source
-from ninefold.io.geojson import parse_geojson, read_geojson
+from ninefold.io.sources.geojson import parse_geojson, read_geojson
 
 
 def planar(*lines, **members):

@@ -7,9 +7,9 @@ import pytest
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping import PlaneMap
 from ninefold.reasoner import relate
-from ninefold.reasoner.consistency import Consistent, Inconsistent
 from ninefold.reasoner.knowledge import KnowledgeBase
-from ninefold.reasoner.network import Network
+from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
+from ninefold.reasoner.networks.network import Network
 
 
 @pytest.fixture(scope="module")
@@ -103,8 +103,8 @@ def test_bad_input(plane, names):
 
 
 def test_an_atlas_brings_its_regions_and_statements(plane, names, tmp_path):
-    from ninefold.io.atlas import Atlas
-    from ninefold.io.records import Statement
+    from ninefold.io.atlas.atlas import Atlas
+    from ninefold.io.atlas.records import Statement
 
     with Atlas.from_map(plane, tmp_path / "town.atlas") as atlas:
         atlas.name_all({**names, "gate": "vertex:5"})

@@ -7,7 +7,7 @@ import pytest
 
 from ninefold.encodings import ALLEN, POINT, RCC8
 from ninefold.errors import BadInput, NinefoldError, UnknownName
-from ninefold.reasoner.network import Network, Statement
+from ninefold.reasoner.networks.network import Network, Statement
 
 
 @pytest.fixture

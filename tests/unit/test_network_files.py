@@ -8,7 +8,7 @@ import pytest
 
 from ninefold.encodings import ALLEN, POINT, RCC8, Calculus
 from ninefold.errors import BadInput, NinefoldError, TooLarge, UnknownName
-from ninefold.io.networks import (
+from ninefold.io.networks.network_file import (
     NETWORK_FORMATS,
     load_network,
     network_from_text,
@@ -17,7 +17,7 @@ from ninefold.io.networks import (
     read_networks,
     write_network,
 )
-from ninefold.reasoner.network import Network
+from ninefold.reasoner.networks.network import Network
 
 CSP = """\
 3 #three and one
@@ -173,7 +173,7 @@ def test_count_in_the_first_line_is_noticed_in_well_filled_files():
 
 
 def load_file(_, text):
-    from ninefold.io.networks import _parse
+    from ninefold.io.networks.network_file import _parse
 
     return _parse(text, "csp", None, "net.csp")
 

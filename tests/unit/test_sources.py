@@ -10,7 +10,7 @@ import shapely
 
 from ninefold.errors import BadInput, UnknownName
 from ninefold.io import Source, read_source, samples
-from ninefold.io.geojson import parse_geojson
+from ninefold.io.sources.geojson import parse_geojson
 
 
 def source_of(*lines):

@@ -9,10 +9,10 @@ import shapely
 from ninefold.errors import BadInput, UnknownName
 from ninefold.io import samples
 from ninefold.io.relations import write_relations
-from ninefold.io.truth import TrueShapes
 from ninefold.layout import Drawing, drawing_problems
+from ninefold.layout.truth import TrueShapes
 from ninefold.mapping import build
-from ninefold.mapping.simulated import explore
+from ninefold.mapping.robot.simulated import explore
 from ninefold.reasoner import de9im_strings, relate_all
 
 

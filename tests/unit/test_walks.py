@@ -10,8 +10,8 @@ import sys
 import pytest
 
 from ninefold.errors import NinefoldError, WalkError
-from ninefold.io import walks
-from ninefold.io.walks import WalkReader, iter_events, read_header, read_walk, write_walk
+from ninefold.io.walks import json_lines as walks
+from ninefold.io.walks.json_lines import WalkReader, iter_events, read_header, read_walk, write_walk
 from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader
 
 try:
@@ -251,7 +251,7 @@ def test_an_old_file_stays_when_the_new_one_cannot_be_written(tmp_path, monkeypa
 @pytest.mark.skipif(resource is None, reason="needs POSIX limits")
 def test_a_file_that_may_not_grow_for_real(tmp_path):
     script = (
-        "import resource, sys; from ninefold.errors import WalkError; from ninefold.io.walks import write_walk;"
+        "import resource, sys; from ninefold.errors import WalkError; from ninefold.io.walks.json_lines import write_walk;"
         "from ninefold.mapping import *; walk = Walk(WalkHeader(), [Visit('a'), Samples((0.0,) * 10_000), Visit('b')]);"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
         "try: write_walk(walk, sys.argv[1])\n"
@@ -273,7 +273,7 @@ def test_a_folder_that_does_not_exist(tmp_path):
 @pytest.mark.skipif(resource is None, reason="needs POSIX permissions")
 def test_a_folder_that_is_read_only(tmp_path):
     script = (
-        "import os, sys; from ninefold.errors import WalkError; from ninefold.io.walks import write_walk;"
+        "import os, sys; from ninefold.errors import WalkError; from ninefold.io.walks.json_lines import write_walk;"
         "from ninefold.mapping import *; walk = Walk(WalkHeader(), [Visit('a')])\n"
         "if os.geteuid() == 0: os.seteuid(65534)  # the superuser may write everywhere\n"
         "try: write_walk(walk, sys.argv[1])\n"

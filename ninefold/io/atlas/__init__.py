@@ -1,0 +1,13 @@
+"""The atlas: one SQLite file with a walk, its map, named sets, declared relations and where they came from.
+
+=================  ==============================================================================================
+`atlas`            `Atlas`: open, append events, store and read sets and statements
+`records`          `Provenance` and `Statement`, what is kept beside the map
+``_file``          one connection and its transactions; ``_schema`` the tables and what an open file is checked for
+``_event_log``     the walk as an append-only log, and snapshots of the map
+``_map_rows``      a map as rows of blobs and names
+``_definitions``   sets as what defines them, never as face numbers; ``_set_lists`` lists that name several sets
+=================  ==============================================================================================
+
+The tables are documented in the reference; any SQLite tool reads them.
+"""

@@ -1,0 +1,171 @@
+"""Legs: what the heading samples between two places say, whoever the places are.
+
+Reading a leg is apart from recognising the place at its end: a mapper reads legs and recognises, a reader of walks whose
+places are in doubt reads the same legs and does not.
+"""
+
+from __future__ import annotations
+
+from math import degrees, pi, remainder
+from typing import TYPE_CHECKING, NamedTuple
+
+from ninefold.errors import WalkError
+
+from ..heading import TAU, wrap
+from ._growing import whole_turns
+from .walk import Visit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from .walk import Event
+
+__all__ = ["Leg", "LegReader", "read_legs", "show_angle", "show_yaw"]
+
+_HALF_TURN = pi - 1e-9
+
+
+class Leg(NamedTuple):
+    """A finished leg.
+
+    Attributes
+    ----------
+    out
+        Yaw on leaving, radians in (-pi, pi].
+    back
+        Yaw of the way back at the place reached: the opposite of the yaw on arriving.
+    turn
+        Net rotation on the way, counter-clockwise positive, whole turns included.
+    """
+
+    out: float
+    back: float
+    turn: float
+
+
+class LegReader:
+    """Takes the samples of one leg after another.
+
+    Examples
+    --------
+    >>> reader = LegReader()
+    >>> reader.take((0.0, 0.5))
+    >>> reader.take((1.0,))
+    >>> leg = reader.finish()
+    >>> leg.out, round(leg.turn, 3), reader.started
+    (0.0, 1.0, False)
+    """
+
+    __slots__ = ("_first", "_last", "_turn")
+
+    def __init__(self) -> None:
+        self._first: float | None = None
+        self._last = 0.0
+        self._turn = 0.0
+
+    @property
+    def started(self) -> bool:
+        """Whether samples were taken since the last leg was finished."""
+        return self._first is not None
+
+    def take(self, yaws: tuple[float, ...]) -> None:
+        """Take samples, radians, wrapped or not; at least one.
+
+        Raises
+        ------
+        WalkError
+            If two successive samples differ by half a turn; the leg is then as it was.
+        """
+        first, last, turn = self._first, self._last, self._turn
+        if first is None:
+            first = last = yaws[0]
+            turn = 0.0
+        for yaw in yaws:
+            change = remainder(yaw - last, TAU)
+            if not -_HALF_TURN < change < _HALF_TURN:
+                raise WalkError(
+                    f"successive headings {show_yaw(last)} and {show_yaw(yaw)} differ by half a turn, so the way between "
+                    "them is unknown; sample more often"
+                )
+            turn += change
+            last = yaw
+        self._first, self._last, self._turn = first, last, turn
+
+    def read(self) -> Leg:
+        """Return the leg so far, to its last sample; `drop` then begins another.
+
+        Raises
+        ------
+        WalkError
+            If no sample was taken, or the samples are too large to mean an angle.
+        """
+        if self._first is None:
+            raise WalkError("no heading; a leg has at least one sample")
+        leg = Leg(wrap(self._first), wrap(self._last + pi), self._turn)
+        if abs(whole_turns(*leg)[1]) > 1e-6:
+            raise WalkError("the headings are numbers so large that their differences mean nothing; give radians")
+        return leg
+
+    def drop(self) -> None:
+        """Forget the leg so far."""
+        self._first = None
+
+    def finish(self) -> Leg:
+        """Return the leg and begin another; raises as `read`."""
+        leg = self.read()
+        self.drop()
+        return leg
+
+    def fork(self) -> LegReader:
+        """Return a reader that goes on from here on its own."""
+        other = LegReader()
+        other._first, other._last, other._turn = self._first, self._last, self._turn
+        return other
+
+
+def read_legs(events: Iterable[Event]) -> tuple[Leg, ...]:
+    """Return the finished legs of a walk, one fewer than its visits; places and exits are not looked at.
+
+    Raises
+    ------
+    WalkError
+        For samples before the first visit, or a leg that cannot be read; with the number of the event, counted from 1.
+
+    Notes
+    -----
+    Complexity O(samples).
+
+    Examples
+    --------
+    >>> from ninefold.mapping import Heading, Samples, Visit
+    >>> east, north = Heading(0.0), Heading(1.5)
+    >>> legs = read_legs([Visit(None), Samples.of(east, north), Visit(None), Samples.of(east)])
+    >>> [round(leg.turn, 3) for leg in legs]
+    [1.5]
+    """
+    reader = LegReader()
+    legs: list[Leg] = []
+    begun = False
+    for number, event in enumerate(events, 1):
+        try:
+            if isinstance(event, Visit):
+                if begun:
+                    legs.append(reader.finish())
+                begun = True
+            elif begun:
+                reader.take(event.yaw)
+            else:
+                raise WalkError("a heading before the first place; a walk begins at a place")
+        except WalkError as error:
+            raise WalkError(str(error), where=f"event {number}") from None
+    return tuple(legs)
+
+
+def show_yaw(yaw: float) -> str:
+    """Write a yaw for a message."""
+    return show_angle(wrap(yaw))
+
+
+def show_angle(radians: float) -> str:
+    """Write an angle for a message."""
+    return f"{degrees(radians) + 0.0:.4g} deg"

@@ -1,0 +1,193 @@
+"""Every scenario of a network, one after another, and how many there are.
+
+Pairs get base relations one at a time, with closure after each. Pairs whose labels closure cannot be trusted with come
+first, and `check` confirms every step among them; from then on no step leads into a dead end, so that the next scenario
+is never far.
+
+Examples
+--------
+>>> from ninefold.reasoner.networks.network import Network
+>>> from ninefold.reasoner.networks.enumeration import count, scenarios
+>>> net = Network("rcc8")
+>>> _ = net.add("kitchen", "house", "inside | coveredBy")
+>>> _ = net.add("house", "garden", "disjoint")
+>>> [scenario.relation("kitchen", "house") for scenario in scenarios(net)]
+['TPP', 'NTPP']
+>>> count(net, limit=1)
+Count(count=1, exact=False)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations, islice
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ninefold.errors import BadInput
+
+from .consistency import Inconsistent, check
+from .derivation import RecordedClosure
+from .refutation import decides
+from .scenario import Scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from .network import Network
+
+__all__ = ["Count", "count", "scenarios", "some_scenario"]
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many scenarios there are.
+
+    Attributes
+    ----------
+    count
+        Scenarios found.
+    exact
+        False if there are more.
+    """
+
+    count: int
+    exact: bool
+
+
+def count(net: Network, limit: int = 10_000, *, seed: int = 0) -> Count:
+    """Count the scenarios of a network, up to a limit.
+
+    Raises
+    ------
+    BadInput
+        A limit below 0.
+    """
+    if limit < 0:
+        raise BadInput(f"a limit is a number of scenarios, not {limit}")
+    found = sum(1 for _ in islice(scenarios(net, seed=seed), limit + 1))
+    return Count(min(found, limit), found <= limit)
+
+
+def some_scenario(net: Network, *, seed: int = 0) -> Scenario | None:
+    """Return one scenario of a network, or None if it is inconsistent.
+
+    In a closed network of tractable labels every pair can take its first base relation (in the order DC, EC, PO, TPP,
+    NTPP, ... of the bits) at once. That is tried first, and kept if every triangle confirms it; else the first of
+    `scenarios` is returned.
+
+    Complexity
+    ----------
+    One closure and O(n^3) bit operations where that works.
+    """
+    closure = closed(net)
+    if closure is None:
+        return None
+    labels = closure.labels.astype(np.int64)
+    first = np.triu(labels & -labels, 1)
+    backwards, mirrored = np.zeros_like(first), first.T
+    for mask in np.unique(first).tolist():
+        backwards[mirrored == mask] = net.calculus.converse_of(mask)
+    found = Scenario.from_labels(net.calculus, net.entities, first | backwards)
+    return found if found.is_closed() and found.satisfies(net) else next(scenarios(net, seed=seed), None)
+
+
+def closed(net: Network) -> RecordedClosure | None:
+    """Return the closure of all statements, or None if it refutes them."""
+    closure = RecordedClosure(net.calculus, net.n_entities)
+    for s in net.statements:
+        if s.a != s.b and not closure.state(net.index(s.a), net.index(s.b), s.mask, s.index):
+            return None
+    return closure if closure.close() else None
+
+
+def scenarios(net: Network, *, seed: int = 0) -> Iterator[Scenario]:
+    """Yield every scenario of a network, each once; none if it is inconsistent.
+
+    Parameters
+    ----------
+    seed
+        For ``check``. The order of the scenarios does not depend on it.
+
+    Complexity
+    ----------
+    Between two scenarios O(n^2) closures, and as many checks where labels are outside a tractable class.
+    """
+    closure = closed(net)
+    if closure is not None and not isinstance(check(net, seed=seed), Inconsistent):
+        yield from _Enumerator(net, closure, seed).run()
+
+
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """One choice: the state to come back to, the pair, bases to try, pairs settled, and whether closure decides here."""
+
+    mark: int
+    pair: tuple[int, int]
+    bases: Iterator[int]
+    done: int
+    free: bool
+
+
+class _Enumerator:
+    def __init__(self, net: Network, closure: RecordedClosure, seed: int) -> None:
+        self._net = net
+        self._closure = closure
+        self._seed = seed
+        self._pairs = list(combinations(range(net.n_entities), 2))
+
+    def run(self) -> Iterator[Scenario]:
+        """Yield the scenarios of what is stated; it is consistent."""
+        calculus, closure = self._net.calculus, self._closure
+        levels: list[_Level] = []
+        done, free = 0, False
+        while True:
+            pair, done, free = self._next(done, free)
+            if pair is None:
+                yield Scenario.from_labels(calculus, self._net.entities, closure.labels)
+            else:
+                label = closure.relation(*pair)
+                bases = iter([1 << k for k in range(calculus.n_bases) if label >> k & 1])
+                levels.append(_Level(closure.mark(), pair, bases, done, free))
+            while levels:
+                level = levels[-1]
+                closure.undo(level.mark)
+                base = next(level.bases, None)
+                if base is None:
+                    levels.pop()
+                elif closure.state(*level.pair, base, 0) and closure.close() and (level.free or self._consistent()):
+                    done, free = level.done, level.free
+                    break
+            else:
+                return
+
+    def _next(self, done: int, free: bool) -> tuple[tuple[int, int] | None, int, bool]:  # noqa: FBT001 - with `done`
+        """Return the pair to settle next, or None; how many pairs are settled; whether closure decides from here on."""
+        calculus, closure, pairs = self._net.calculus, self._closure, self._pairs
+        while done < len(pairs) and calculus.is_atomic(closure.relation(*pairs[done])):
+            done += 1
+        if done == len(pairs):
+            return None, done, True
+        hard = None if free else next(self._undecided(), None)
+        return hard or pairs[done], done, hard is None
+
+    def _undecided(self) -> Iterator[tuple[int, int]]:
+        return (pair for pair in self._stated() if not decides(self._net.calculus, self._closure.relation(*pair)))
+
+    def _stated(self) -> Iterator[tuple[int, int]]:
+        constraints = self._net.constraints()
+        return zip(constraints.i.tolist(), constraints.j.tolist(), strict=True)
+
+    def _consistent(self) -> bool:
+        """Tell whether the closed network has a scenario; closure says so where it decides."""
+        if next(self._undecided(), None) is None:
+            return True
+        from .network import Network
+
+        calculus, closure = self._net.calculus, self._closure
+        present = [
+            (i, j, closure.relation(i, j)) for i, j in self._pairs if closure.relation(i, j) != calculus.universal
+        ]  # fmt: skip
+        net = Network.from_constraints(calculus, self._net.n_entities, present)
+        return not isinstance(check(net, seed=self._seed), Inconsistent)
