@@ -14,7 +14,7 @@ almost global bearing-only formation stabilization, IEEE TAC 61, 2016 (bearing-b
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,15 +25,40 @@ if TYPE_CHECKING:
 
     from .pieces import Pieces
 
-__all__ = ["FollowHeadings", "heading_errors", "shape_of_directions"]
+__all__ = ["FAITHFUL", "LEGIBLE", "FollowHeadings", "Lengths", "heading_errors", "shape_of_directions"]
 
-SHORTEST, LONGEST = 0.25, 6.0
-"""Lengths, in units of the mean, between which a piece without a measured length is pulled."""
+ACROSS, MEASURED = 3.0, 2.0
+"""Weights of the angle by which a piece misses its chord, and of a length that was measured."""
 
-ACROSS, ALONG, MEASURED = 3.0, 0.5, 2.0
-"""Weights of the angle by which a piece misses its chord, of its length, and of a length that was measured."""
 
-_THIN = 0.3
+class Lengths(NamedTuple):
+    """How lengths that were not measured are treated.
+
+    Attributes
+    ----------
+    shortest, longest
+        Between which a piece is pulled, in units of the mean.
+    even
+        Share of the way to 1 that it is pulled besides.
+    along
+        Weight of that pull.
+    thin
+        Size below which a piece's angle counts less.
+    """
+
+    shortest: float
+    longest: float
+    even: float
+    along: float
+    thin: float
+
+
+LEGIBLE = Lengths(0.25, 6.0, 0.1, 0.5, 0.3)
+"""For pictures: nothing too short to see."""
+
+FAITHFUL = Lengths(0.01, 100.0, 0.0, 0.02, 0.02)
+"""For fits: directions count, lengths hardly."""
+
 _LOOSE = 0.02
 """Pull of a piece without a heading, such as a tether: just enough that the system has one solution."""
 
@@ -45,10 +70,18 @@ class FollowHeadings:
     ----------
     pieces
         With their chords.
+    trust
+        (M,) what each heading counts, 1 if left out.
+    lengths
+        How lengths that were not measured are treated.
     """
 
-    def __init__(self, pieces: Pieces) -> None:
+    def __init__(
+        self, pieces: Pieces, *, trust: NDArray[np.float64] | None = None, lengths: Lengths = LEGIBLE
+    ) -> None:
         self._pieces = pieces
+        self._lengths = lengths
+        self._trust = np.ones(pieces.chord.size) if trust is None else trust
         self._t = pieces.along
         self._n = np.stack([-self._t[:, 1], self._t[:, 0]], axis=1)
         known = np.isfinite(pieces.metres)
@@ -67,38 +100,54 @@ class FollowHeadings:
         step = points[self._pieces.head] - points[self._pieces.tail]
         along, across = (step * self._t).sum(axis=1), (step * self._n).sum(axis=1)
         known = np.isfinite(self._wanted)
-        length = np.where(known, self._wanted, np.clip(along, SHORTEST, LONGEST) * 0.9 + 0.1)
-        size = np.maximum(np.hypot(along, across), _THIN)
-        return self._blocks(length, ACROSS / size, np.where(known, MEASURED, ALONG) / np.maximum(length, _THIN))
+        free = self._lengths
+        open_length = np.clip(along, free.shortest, free.longest) * (1 - free.even) + free.even
+        length = np.where(known, self._wanted, open_length)
+        size = np.maximum(np.hypot(along, across), free.thin)
+        return self._blocks(length, ACROSS / size, np.where(known, MEASURED, free.along) / np.maximum(length, free.thin))
 
     def _blocks(
         self, length: NDArray[np.float64], across: NDArray[np.float64], along: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         t, n, on = self._t, self._n, self._pieces.measured
-        w_n, w_t = np.where(on, across**2, 0.0), np.where(on, along**2, 0.0)
+        w_n, w_t = np.where(on, self._trust * across**2, 0.0), np.where(on, along**2, 0.0)
         blocks = w_n[:, None, None] * n[:, :, None] * n[:, None, :] + w_t[:, None, None] * t[:, :, None] * t[:, None, :]
         blocks += np.where(on, 0.0, _LOOSE)[:, None, None] * np.eye(2)
         return blocks, (w_t * length)[:, None] * t
 
 
-def shape_of_directions(pieces: Pieces, *, rounds: int = 15, enough: float = 1e-3) -> NDArray[np.float64]:
+def shape_of_directions(
+    pieces: Pieces,
+    *,
+    rounds: int = 15,
+    enough: float = 1e-3,
+    trust: NDArray[np.float64] | None = None,
+    start: NDArray[np.float64] | None = None,
+    lengths: Lengths = LEGIBLE,
+) -> NDArray[np.float64]:
     """Return (n, 2) points, the first at the origin, whose differences follow the chords; lengths are near 1.
 
     Parameters
     ----------
     rounds, enough
         Rounds of reweighting, fewer once no coordinate moves by more than `enough`.
+    trust
+        (M,) what each heading counts, 1 if left out.
+    start
+        (n, 2) picture to take the first weights from.
+    lengths
+        How lengths that were not measured are treated.
 
     Notes
     -----
     Complexity: a sparse factorisation a round, about O(V^1.5).
     """
     n = pieces.n_vertices
-    pull = FollowHeadings(pieces)
+    pull = FollowHeadings(pieces, trust=trust, lengths=lengths)
     free = np.ones(n, np.bool_)
     free[0] = False
-    points = np.zeros((n, 2))
-    blocks, wanted = pull.start()
+    points = np.zeros((n, 2)) if start is None else start
+    blocks, wanted = pull.start() if start is None else pull.terms(start)
     for k in range(rounds):
         system = System(free)
         system.add_differences(pieces.tail, pieces.head, blocks)
