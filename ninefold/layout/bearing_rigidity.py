@@ -221,8 +221,8 @@ def _redundancy(pieces: Pieces, points: NDArray[np.float64], rows: NDArray[np.in
     u, v = pieces.tail[rows], pieces.head[rows]
     step = points[v] - points[u]
     length = np.hypot(*step.T)
-    t = pieces.along[rows]
-    across = np.stack([-t[:, 1], t[:, 0]], axis=1) / np.maximum(length, FAITHFUL.thin)[:, None]  # slope of the angle
+    floor = np.maximum(length, _SHORT * length.mean()) * np.maximum(length, 1e-9)
+    across = np.stack([-step[:, 1], step[:, 0]], axis=1) / floor[:, None]  # slope of the angle
     k = np.arange(rows.size)
     column = np.concatenate([2 * v, 2 * v + 1, 2 * u, 2 * u + 1])
     value = np.concatenate([across[:, 0], across[:, 1], -across[:, 0], -across[:, 1]])
