@@ -52,8 +52,8 @@ def check(
     """Decide whether a network is consistent, and show a scenario or a minimal conflict."""
     import time
 
+    from ninefold._files import published, refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import published, refuse_existing
     from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
     from ninefold.reasoner.networks.consistency import check as decide
 
@@ -346,7 +346,7 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
 
 
 def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
-    from ninefold.io.files import published
+    from ninefold._files import published
     from ninefold.layout.realization import realize
     from ninefold.layout.witness import witness_svg
 
