@@ -11,8 +11,9 @@ from ._output import note, notes, print_json, progress
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ninefold.reasoner.networks.network import Network, Statement
+    from ninefold.reasoner.networks.network import Network
     from ninefold.reasoner.networks.scenario import Scenario
+    from ninefold.reasoner.networks.statement import Statement
 
 __all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -35,8 +35,9 @@ from .networks.conflicts import Conflict, conflict
 from .networks.consistency import check
 from .networks.explanation import explain
 from .networks.inference import Inference, infer
-from .networks.network import Network, Statement
+from .networks.network import Network
 from .networks.questions import Answer, ask
+from .networks.statement import Statement
 from .networks.words import phrase
 from .sets.bulk import relate_all
 from .sets.relation import RCC8_OF_NAME, names_of
@@ -54,22 +55,6 @@ MAPPED = "mapped"
 """Label of the statements that come from the map."""
 
 
-@runtime_checkable
-class Declared(Protocol):
-    """A statement whose relations are names, as an atlas keeps them."""
-
-    @property
-    def a(self) -> str: ...
-    @property
-    def b(self) -> str: ...
-    @property
-    def relations(self) -> tuple[str, ...]: ...
-    @property
-    def label(self) -> str | None: ...
-    @property
-    def weight(self) -> float | None: ...
-
-
 class HasSets(Protocol):
     """What `KnowledgeBase.from_atlas` needs of an atlas."""
 
@@ -78,7 +63,7 @@ class HasSets(Protocol):
     @property
     def sets(self) -> Mapping[str, Set]: ...
     @property
-    def statements(self) -> tuple[Declared, ...]: ...
+    def statements(self) -> tuple[Statement, ...]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +130,7 @@ class KnowledgeBase:
         self,
         plane: PlaneMap,
         names: Mapping[str, Region],
-        statements: Iterable[Statement | Declared | tuple[object, ...]] | Network = (),
+        statements: Iterable[Statement | tuple[object, ...]] | Network = (),
     ) -> None:
         self.plane = plane
         self.names = dict(names)
@@ -190,11 +175,8 @@ class KnowledgeBase:
                     raise BadInput(f"{name!r} is {sets[name]!r}; statements can be reasoned about between regions only")
         return cls(atlas.plane, regions, atlas.statements)
 
-    def _say(self, s: Statement | Declared | tuple[object, ...]) -> None:
+    def _say(self, s: Statement | tuple[object, ...]) -> None:
         if isinstance(s, Statement):
-            self.network.add(s.a, s.b, s.mask, s.label, s.weight)
-            return
-        if isinstance(s, Declared):
             self.network.add(s.a, s.b, s.relations, s.label, s.weight)
             return
         if not isinstance(s, tuple | list) or not 3 <= len(s) <= 5:

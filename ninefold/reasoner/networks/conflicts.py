@@ -36,7 +36,8 @@ from .refutation import refute
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Conflict", "conflict"]
 

@@ -21,8 +21,7 @@ Network(rcc8, 2 entities, 2 statements)
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,51 +30,14 @@ from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
 
+from .statement import Statement, checked_weight
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-__all__ = ["Constraints", "Network", "Statement"]
-
-
-@dataclass(frozen=True, slots=True)
-class Statement:
-    """One statement of a network: ``a`` is related to ``b`` by one of the base relations in `mask`.
-
-    Parameters
-    ----------
-    index
-        Its place in the network, from 0.
-    a, b
-        Names of the entities.
-    mask
-        Relations of the network's calculus.
-    label
-        What the one who said it calls it, or None.
-    weight
-        What it costs to drop it: `math.inf` is hard, None counts as 1.
-    """
-
-    index: int
-    a: str
-    b: str
-    mask: int
-    label: str | None = None
-    weight: float | None = None
-
-    @property
-    def cost(self) -> float:
-        """The weight, with None counted as 1."""
-        return 1.0 if self.weight is None else self.weight
-
-    @property
-    def hard(self) -> bool:
-        """Whether it must not be dropped."""
-        return self.cost == math.inf
-
-    def __str__(self) -> str:
-        return self.label or f"statement {self.index + 1}"
+__all__ = ["Constraints", "Network"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +90,7 @@ class Network:
     tables by sort; nothing looks at it yet.
     """
 
-    __slots__ = ("_calculus", "_constraints", "_index", "_sorts", "_statements")
+    __slots__ = ("_calculus", "_constraints", "_index", "_names", "_sorts", "_statements")
 
     def __init__(self, calculus: Calculus | str) -> None:
         self._calculus = calculus_named(calculus) if isinstance(calculus, str) else calculus
@@ -137,6 +99,7 @@ class Network:
         self._index: dict[str, int] = {}
         self._sorts: list[str | None] = []
         self._statements: list[Statement] = []
+        self._names: dict[int, tuple[str, ...]] = {}
         self._constraints: Constraints | None = None
 
     @classmethod
@@ -261,11 +224,14 @@ class Network:
             if not isinstance(label, str) or not label.strip():
                 raise BadInput(f"a label is a non-empty string or None, not {label!r}")
             label = label.strip()
-        cost = _weight(weight)
+        cost = checked_weight(weight)
+        names = self._names.get(mask)
+        if names is None:
+            names = self._names[mask] = tuple(self._calculus.names(mask))
         for key in (key_a, key_b):
             if key not in self._index:
                 self._new(key)
-        statement = Statement(len(self._statements), key_a, key_b, mask, label, cost)
+        statement = Statement(key_a, names, key_b, label, cost, index=len(self._statements), mask=mask)
         self._statements.append(statement)
         self._constraints = None
         return statement
@@ -347,7 +313,7 @@ class Network:
         net._sorts = list(self._sorts)
         for at, k in enumerate(chosen):
             old = self._statements[k]
-            net._statements.append(Statement(at, old.a, old.b, old.mask, old.label, old.weight))
+            net._statements.append(replace(old, index=at))
         return net
 
     def copy(self) -> Network:
@@ -376,17 +342,3 @@ def _entity(name: str | int) -> str:
     if isinstance(name, int | np.integer) and not isinstance(name, bool):
         return str(name)
     raise BadInput(f"an entity is named by a non-empty string or an integer, not {name!r}")
-
-
-def _weight(weight: float | None) -> float | None:
-    if weight is None:
-        return None
-    if isinstance(weight, bool) or not isinstance(weight, int | float | np.integer | np.floating):
-        raise BadInput(f"a weight is a number or None, not {weight!r}")
-    try:
-        cost = float(weight)
-    except OverflowError:
-        raise BadInput("a weight is at most 1.8e308; math.inf makes a statement hard") from None
-    if math.isnan(cost) or cost < 0:
-        raise BadInput(f"a weight is not negative; math.inf makes a statement hard: {weight!r} was given")
-    return cost

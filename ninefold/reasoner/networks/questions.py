@@ -38,8 +38,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from .formula import Atom
-    from .network import Network, Statement
+    from .network import Network
     from .scenario import Scenario
+    from .statement import Statement
 
 __all__ = ["Answer", "ask"]
 

@@ -39,7 +39,8 @@ from .consistency import Consistent, Inconsistent, check
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Repair", "repair"]
 
