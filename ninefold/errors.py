@@ -30,6 +30,7 @@ __all__ = [
     "TooLarge",
     "UnknownName",
     "WalkError",
+    "located",
 ]
 
 
@@ -38,7 +39,22 @@ class NinefoldError(Exception):
 
 
 class BadInput(NinefoldError, ValueError):
-    """A value, file or argument that cannot be what it has to be."""
+    """A value, file or argument that cannot be what it has to be.
+
+    Attributes
+    ----------
+    event
+        The number of the event of a walk that it is about, counted from 1, or None.
+    reason
+        The message without the place that stands before it.
+    """
+
+    event: int | None = None
+    reason: str = ""
+
+    def __init__(self, *message: object) -> None:
+        super().__init__(*message)
+        self.reason = str(self)
 
 
 class UnknownName(NinefoldError, KeyError):
@@ -109,6 +125,29 @@ class WalkError(BadInput):
     def __init__(self, message: str, *, where: str = "") -> None:
         super().__init__(f"{where}: {message}" if where else message)
         self.where = where
+        self.reason = message
+
+
+def located(error: BadInput, where: str, *, event: int | None = None) -> BadInput:
+    """Return the same error of a walk with the place where it happened before its message, in place of any other.
+
+    Parameters
+    ----------
+    where
+        Such as ``"event 7"``, or file and line.
+    event
+        The number of the event, where it is known; otherwise that of `error` stays.
+    """
+    found: BadInput
+    if isinstance(error, NotPlane):
+        found = NotPlane(f"{where}: {error.reason}", genus=error.genus, edges=error.edges)
+    elif isinstance(error, AmbiguousDart):
+        found = AmbiguousDart(f"{where}: {error.reason}")
+    else:
+        found = WalkError(error.reason, where=where)
+    found.reason = error.reason
+    found.event = error.event if event is None else event
+    return found
 
 
 class AtlasError(NinefoldError, OSError):
