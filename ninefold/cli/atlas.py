@@ -30,14 +30,14 @@ def map_source(
     """Build the atlas of a walk log or of a source with geometry, whose coordinates are dropped."""
     from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.formats import format_of
+    from ninefold.io.formats import recognise
 
-    kind = format_of(source)
+    kind = recognise(source).name
     if kind == "atlas":
         raise BadInput(f"{source}: an atlas already; `ninefold info` shows what is in it")
     if kind == "walk" and drop_crossing:
         raise BadInput("--drop-crossing is for sources with geometry, and a walk has none")
-    if kind == "source" and tolerance is not None:
+    if kind != "walk" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
     refuse_existing(out, force=force)
     if out.exists() and not source.startswith("sample:") and out.samefile(source):
@@ -58,16 +58,19 @@ def map_source(
 
 
 def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:
-    from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
+    from ninefold.errors import BadInput
     from ninefold.io import Atlas, Provenance, read_walk
     from ninefold.io.walks.heading_units import doubts
+    from ninefold.io.walks.mapped import by_line
 
     walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
     try:
-        return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
-    except (AmbiguousDart, NotPlane, WalkError) as error:  # they tell the event, not the file
-        reason = "; ".join([str(error), *doubts(walk)])
-        raise BadInput(f"{source}: {reason}") from None
+        with by_line(source):
+            return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
+    except BadInput as error:
+        if error.event is None:
+            raise
+        raise BadInput("; ".join([str(error), *doubts(walk)])) from None
 
 
 def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":

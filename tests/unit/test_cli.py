@@ -257,10 +257,12 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--start", "in9"), "did you mean")
     bad = tmp_path / "bad.jsonl"
     bad.write_text('{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}\n{"place": "a"}\n{"heading": NaN}\n')
-    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl:3")
+    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl, line 3: ")
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas", "--drop-crossing"), "--drop-crossing")
     bad.write_text(bad.read_text().replace("NaN", "0") + '{"place": "b", "exits": [0]}\n')
-    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl: event 3", "along none of its 1 exit")
+    assert_refused(
+        run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl, line 4: ", "along none of its 1 exit; exits seen: 0 rad"
+    )
     (tmp_path / "notes.txt").write_text("hello")
     assert_refused(run("map", tmp_path / "notes.txt", "-o", tmp_path / "x.atlas"), "neither an atlas")
     assert_refused(run("info", tmp_path / "notes.txt"), "not an atlas")
@@ -298,7 +300,7 @@ def test_a_mistaken_unit_of_headings_is_doubted(tmp_path, run, run_json, unit, h
     lines[-1] = {"place": "0"}  # closes a loop that cannot be
     lines[4] = lines[2]
     walk.write_text("\n".join(map(json.dumps, lines)))
-    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl: event", words or "")
+    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl, line ", words or "")
 
 
 def test_force_never_replaces_the_source(tmp_path, run):

@@ -14,6 +14,8 @@ from urllib.parse import quote
 
 from ninefold.errors import AtlasError
 
+from ..formats import foreign, wrong_kind
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
@@ -73,13 +75,16 @@ def check_file(path: Path) -> None:
     """
     try:
         with path.open("rb") as file:
-            head = file.read(100)
+            head = file.read(4096)
             size = os.fstat(file.fileno()).st_size
     except FileNotFoundError:
         raise AtlasError(f"{path}: no such file; `ninefold map SOURCE -o {path.name}` makes an atlas") from None
     except OSError as error:
         raise AtlasError(f"{path}: cannot be read ({error.strerror or error})") from None
     if len(head) < 100 or not head.startswith(_MAGIC):
+        other = foreign(head, "atlas")
+        if other is not None:
+            raise AtlasError(wrong_kind(path, other, "atlas"))
         raise AtlasError(f"{path}: not an atlas ({'the file is empty' if not head else 'not an SQLite database'})")
     number = int.from_bytes(head[68:72], "big")
     version = int.from_bytes(head[60:64], "big")

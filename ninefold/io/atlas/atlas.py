@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ninefold.mapping import PlaneMap, Set
     from ninefold.mapping.robot.walk import Event
 
-__all__ = ["Atlas"]
+__all__ = ["Atlas", "read_plane"]
 
 
 class Atlas:
@@ -404,6 +404,12 @@ class Atlas:
         """Where the content comes from, in the order it came."""
         rows = self._file.rows("SELECT source, kind, sha256, tool, made FROM provenance ORDER BY id")
         return tuple(Provenance(*row) for row in rows)
+
+
+def read_plane(path: str | PathLike[str]) -> PlaneMap:
+    """Return the map of an atlas file."""
+    with Atlas.open(path, writable=False) as atlas:
+        return atlas.plane
 
 
 def _put_provenance(connection: sqlite3.Connection, record: Provenance | None) -> None:
