@@ -305,11 +305,11 @@ class Memory:
                 if a >> 1 == b >> 1 or w != tail[b ^ 1] or w <= v:
                     continue
                 miss = max(abs(remainder(heading[x] - heading[y], TAU)) for x, y in ((a, b), (a ^ 1, b ^ 1)))
-                if hint := self._noise(miss, "at both ends they are only"):
+                if hint := self._noise(miss, "where they meet them they are at most", " apart"):
                     first, second = sorted((a >> 1, b >> 1))
                     found.append(
                         f"edges {quoted(self.edge_names[first])} and {quoted(self.edge_names[second])} both join "
-                        f"{quoted(self.names[v])} and {quoted(self.names[w])}; is it one edge?{hint}"
+                        f"{quoted(self.names[v])} and {quoted(self.names[w])}, and may be one edge{hint}"
                     )
         return found
 
