@@ -31,6 +31,9 @@ __all__ = ["Memory"]
 FARTHEST_MISS = pi / 2
 """Radians by which mean headings may drift from the first pass of an edge before its turning is in doubt."""
 
+THINNEST = 3
+"""Times the tolerance up to which two edges that join the same places are doubted to be two."""
+
 FARTHEST_NOISE = 10
 """Times the tolerance up to which a miss is taken for noise, in messages alone."""
 
@@ -297,7 +300,8 @@ class Memory:
 
         They join the same two places and leave both within a few times the tolerance. O(V + E).
         """
-        found, tail, heading = [], self.grown.tail, self.grown.heading
+        found: dict[str, None] = {}
+        tail, heading = self.grown.tail, self.grown.heading
         for v, star in enumerate(self.stars):
             darts = [dart for dart in star.darts if dart >= 0]
             for a, b in pairwise([*darts, darts[0]] if len(darts) > 1 else []):
@@ -305,13 +309,15 @@ class Memory:
                 if a >> 1 == b >> 1 or w != tail[b ^ 1] or w <= v:
                     continue
                 miss = max(abs(remainder(heading[x] - heading[y], TAU)) for x, y in ((a, b), (a ^ 1, b ^ 1)))
-                if hint := self._noise(miss, "where they meet them they are at most", " apart"):
+                hint = self._noise(miss, "where they meet them they are at most", " apart")
+                if hint and miss <= THINNEST * self.tolerance:
                     first, second = sorted((a >> 1, b >> 1))
-                    found.append(
+                    sentence = (
                         f"edges {quoted(self.edge_names[first])} and {quoted(self.edge_names[second])} both join "
                         f"{quoted(self.names[v])} and {quoted(self.names[w])}, and may be one edge{hint}"
                     )
-        return found
+                    found[sentence] = None
+        return list(found)
 
     def _near_miss(self, star: Star, yaw: float, place: str, verb: str) -> str:
         """Name the direction at a place that a heading misses by little more than the tolerance, if there is one."""
