@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from ninefold._files import published
+from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError, UnknownName
 from ninefold.mapping import Line, Point, Region
 from ninefold.mapping.robot.mapper import Mapper
@@ -60,6 +61,9 @@ class Atlas:
     """
 
     def __init__(self, file: AtlasFile) -> None:
+        if not isinstance(file, AtlasFile):
+            name = quoted(str(file))
+            raise BadInput(f"Atlas.open({name}) opens an atlas; Atlas.create, Atlas.from_walk and Atlas.from_map make one")
         self._file = file
         self._log = EventLog(file)
 
