@@ -25,7 +25,6 @@ from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences
 from ._file import AtlasFile, put, text_that_can_be_written
 from ._map_rows import store_map
-from ._set_lists import set_of_list
 from .records import Provenance, Statement
 
 if TYPE_CHECKING:
@@ -314,9 +313,7 @@ class Atlas:
         row = self._file.rows("SELECT kind, definition FROM named_set WHERE name = ?", text)
         if row:
             return self._set(self.plane, *row[0])
-        if text.lstrip().startswith("["):
-            return set_of_list(self.plane, text)
-        if ":" not in text:
+        if ":" not in text and not text.lstrip().startswith("["):
             raise self._no_set(text)
         return self.plane.parse(text)
 
