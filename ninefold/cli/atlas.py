@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
 from ._output import notes, print_json, progress
 
@@ -140,7 +142,7 @@ def name(
     if as_json:
         print_json({"name": set_name, "set": set_text, "kind": type(item).__name__.lower(), "dimension": item.dimension})
     else:
-        print(f"{set_name}: {item!r}")
+        print(f"{set_name}: {item!r}, stored in {atlas}")
     return 0
 
 
@@ -181,7 +183,8 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     outer = facts["outer_edges"]
     print(f"{facts['file']}: {_described(plane)}")
     print(
-        f"outer face   {facts['outer_face']}, along {len(outer)} edges{': ' + ', '.join(outer[:6]) if outer else ''}"
+        f"outer face   {facts['outer_face']}, along {counted(len(outer), 'edge')}"
+        f"{': ' + ', '.join(outer[:6]) if outer else ''}"
         f"{', ...' if len(outer) > 6 else ''}"
     )
     print(f"dead ends    {facts['dead_ends']}")
@@ -195,14 +198,12 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         )
     )
     print(f"checks       V - E + F is right; {turning}")
-    events = f", {facts['events']:,} events" if facts["origin"] == "walk" else ""
+    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
     print(f"made from    a {facts['origin']}{events}")
     for record in facts["provenance"]:
         print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
     named = facts["names"]
-    kinds = ", ".join(
-        f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in sorted(Counter(named.values()).items())
-    )
+    kinds = ", ".join(counted(count, kind) for kind, count in sorted(Counter(named.values()).items()))
     shown = ", ".join(list(named)[:8]) + (", ..." if len(named) > 8 else "")
     print(f"named sets   {kinds}: {shown}" if named else "named sets   none")
     if facts["statements"]:

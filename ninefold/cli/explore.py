@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from ninefold._wording import counted, quoted
+
 from ._options import AsJson, DropCrossing, Force, SourceText
 from ._output import note, notes, print_json, progress
 
@@ -52,11 +54,10 @@ def explore(
     warnings = list(found.notes)
     missed = sum(map(len, robot.unreached))
     if missed:
-        count = len(robot.unreached)
-        parts = "1 other component" if count == 1 else f"{count:,} other components"
         warnings.append(
-            f"{missed:,} of {found.n_vertices:,} places are in {parts} that cannot be reached from {robot.start!r}, "
-            f"the first with {robot.unreached[0][0]!r}; --start begins elsewhere"
+            f"{missed:,} of {counted(found.n_vertices, 'place')} cannot be reached from {quoted(robot.start)}: they are in "
+            f"{counted(len(robot.unreached), 'other component')}, the first with {quoted(robot.unreached[0][0])}; --start "
+            "begins elsewhere"
         )
     if as_json:
         print_json(
@@ -75,9 +76,9 @@ def explore(
         )
     else:
         notes(warnings)
-        note(f"no crossing without a vertex in {found.n_edges:,} edges")
+        note(f"no crossing without a vertex in {counted(found.n_edges, 'edge')}")
         print(
-            f"{out}: {found.n_vertices - missed:,} places, {robot.walk.n_legs:,} legs, {robot.metres:,.0f} m, "
-            f"{len(robot.walk.events):,} events, from {robot.start!r}"
+            f"{out}: {counted(found.n_vertices - missed, 'place')}, {counted(robot.walk.n_legs, 'leg')}, "
+            f"{robot.metres:,.0f} m, {counted(len(robot.walk.events), 'event')}, from {robot.start!r}"
         )
     return 0

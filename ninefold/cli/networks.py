@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, Force
 from ._output import note, notes, print_json, progress
 
@@ -81,6 +83,7 @@ def check(
         if draw is not None:
             _draw(verdict.scenario, draw, title=net.stem, force=force)
             report["drawing"] = str(draw)
+            text += f"\n{draw}: a drawing of {counted(network.n_entities, 'region')}, checked pair by pair"
     elif isinstance(verdict, Inconsistent):
         report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
         if not no_conflict:
@@ -226,7 +229,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop)} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -254,7 +257,7 @@ def scenarios(
     if as_json:
         print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})
     else:
-        print(f"{'' if exact else 'more than '}{len(found)} scenario{'' if len(found) == 1 else 's'}")
+        print(f"{'' if exact else 'more than '}{counted(len(found), 'scenario')}")
         for number, scenario in enumerate(found, start=1):
             print(f"{number}: " + "; ".join(f"{a} {r} {b}" for a, b, r in scenario.triples()))
     return YES if found else NO
@@ -305,7 +308,7 @@ def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 
 def _counts(network: "Network") -> str:
-    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+    return f"{counted(network.n_entities, 'entity', 'entities')}, {counted(network.n_statements, 'statement')}"
 
 
 def _triples(scenario: "Scenario") -> list[list[str]]:
@@ -342,7 +345,7 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
         if found is None:
             return [], ""
         kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
-        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 
 

@@ -5,8 +5,10 @@ from typing import Annotated
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, Force
-from ._output import notes, print_json, progress
+from ._output import note, notes, print_json, progress
 
 __all__ = ["draw", "verify"]
 
@@ -73,7 +75,7 @@ def verify(
         refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
-    with progress(f"comparing {pairs:,} pairs"):
+    with progress(f"comparing {counted(pairs, 'pair')}"):
         from ninefold import layout as layouts
 
         report = layouts.verify(plane, seed=seed, n_pairs=pairs, layout=layout)
@@ -81,6 +83,9 @@ def verify(
         with progress("shrinking the first disagreement"):
             svg = report.disagreements[0].minimal().to_svg()
         write_text(out, svg, force=force)
+        note(f"{out}: a picture of the first disagreement")
+    elif out is not None:
+        note(f"{out}: not written, since there is no disagreement to draw")
     if as_json:
         found_problems = [*report.problems, *map(str, report.disagreements[:10])]
         print_json({"pairs": report.pairs, "agree": report.agree, "wrong": report.wrong, "problems": found_problems})

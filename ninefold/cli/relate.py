@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, Force
 from ._output import print_json, progress
 
@@ -86,7 +88,7 @@ def _table(sets: "dict[str, Set]", out: Path, *, force: bool, as_json: bool) -> 
     if len(sets) < 2:
         raise BadInput(f"there {'is only one set' if sets else 'is no set'} to relate; store sets with `ninefold name`")
     refuse_existing(out, force=force)
-    with progress(f"relating {len(sets):,} sets"):
+    with progress(f"relating {counted(len(sets), 'set')}"):
         codes = relate_all(list(sets.values()))
     with progress(f"writing {out}"):
         pairs = np.stack(np.triu_indices(len(sets), 1), axis=1)
@@ -94,4 +96,4 @@ def _table(sets: "dict[str, Set]", out: Path, *, force: bool, as_json: bool) -> 
     if as_json:
         print_json({"file": str(out), "sets": len(sets), "pairs": rows})
     else:
-        print(f"{out}: {rows:,} pairs of {len(sets):,} sets")
+        print(f"{out}: {counted(rows, 'pair')} of {counted(len(sets), 'set')}")

@@ -251,7 +251,7 @@ def test_tolerance_comes_from_the_header_or_the_argument():
 
 
 def test_repr():
-    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edges, 1 faces)"
+    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edge, 1 face)"
 
 
 # -- order of events ------------------------------------------------------------------------------------------------------

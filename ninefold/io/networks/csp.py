@@ -146,7 +146,7 @@ def _network(
     if n > _IDLE_ENTITIES and n > 100 * len(statements):
         size = n * ENTITY_BYTES / 2**30
         raise TooLarge(
-            f"{file}: {n} entities for {len(statements)} statements would take {size:.3g} GiB; "
+            f"{file}: {counted(n, 'entity', 'entities')} for {counted(len(statements), 'statement')} would take {size:.3g} GiB; "
             "the first number is the highest index"
         )
     calculus = same_calculus(told, extra.get("calculus"), file)

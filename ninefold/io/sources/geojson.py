@@ -79,7 +79,7 @@ def parse_geojson(text: str, *, origin: str = "GeoJSON") -> Source:
     --------
     >>> from ninefold.io.sources.geojson import parse_geojson
     >>> parse_geojson('{"type": "LineString", "coordinates": [[24.94, 60.17], [24.95, 60.17]]}')
-    Source(GeoJSON: 2 vertices, 1 edges)
+    Source(GeoJSON: 2 vertices, 1 edge)
     """
     try:
         document = json.loads(text)

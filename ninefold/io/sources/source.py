@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -228,12 +229,16 @@ class Source:
         first = self.crossings[0]
         a, b = (self.edge_names[e] for e in first.edges)
         where = f"({first.at[0]:.1f}, {first.at[1]:.1f})"
-        what = f"{a!r} meets itself" if a == b else f"{a!r} and {b!r} {'overlap' if first.overlap else 'meet'}"
+        what = (
+            f"{quoted(a)} meets itself"
+            if a == b
+            else f"{quoted(a)} and {quoted(b)} {'overlap' if first.overlap else 'meet'}"
+        )
         count = sum(crossing.places for crossing in self.crossings)
-        return f"edges meet at {count} place{'' if count == 1 else 's'} without a vertex: first, {what} near {where}"
+        return f"edges meet at {counted(count, 'place')} without a vertex: first, {what} near {where}"
 
     def __repr__(self) -> str:
-        return f"Source({self.origin}: {self.n_vertices} vertices, {self.n_edges} edges)"
+        return f"Source({self.origin}: {counted(self.n_vertices, 'vertex', 'vertices')}, {counted(self.n_edges, 'edge')})"
 
 
 def _crossings(source: Source) -> tuple[Crossing, ...]:

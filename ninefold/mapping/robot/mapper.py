@@ -226,7 +226,9 @@ class Mapper:
         return other
 
     def __repr__(self) -> str:
-        return f"Mapper({self._events} events, {self.n_vertices} vertices, {self.n_edges} edges, {self.n_faces} faces)"
+        kinds = (("event", None), ("vertex", "vertices"), ("edge", None), ("face", None))
+        numbers = (self._events, self.n_vertices, self.n_edges, self.n_faces)
+        return f"Mapper({', '.join(counted(n, one, many) for n, (one, many) in zip(numbers, kinds, strict=True))})"
 
     # -- events --------------------------------------------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
@@ -333,7 +334,8 @@ class Network:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return f"Network({self._calculus.name}, {self.n_entities} entities, {self.n_statements} statements)"
+        entities, statements = counted(self.n_entities, "entity", "entities"), counted(self.n_statements, "statement")
+        return f"Network({self._calculus.name}, {entities}, {statements})"
 
 
 def _entity(name: str | int) -> str:
