@@ -14,6 +14,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from ._wording import LONGEST_QUOTE, quoted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -71,9 +73,10 @@ class UnknownName(NinefoldError, KeyError):
     def __init__(self, kind: str, name: str, known: Iterable[str] = ()) -> None:
         self.kind = kind
         self.name = name
-        self.near = tuple(get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5))
-        hint = f"; did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
-        self.message = f"there is no {kind} named {name!r}{hint}"
+        near = get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5) if len(name) <= LONGEST_QUOTE else []
+        self.near = tuple(near)
+        hint = f"; did you mean {' or '.join(map(quoted, self.near))}?" if self.near else ""
+        self.message = f"there is no {kind} named {quoted(name)}{hint}"
         super().__init__(self.message)
 
     def __str__(self) -> str:

@@ -79,6 +79,6 @@ def explore(
         note(f"no crossing without a vertex in {counted(found.n_edges, 'edge')}")
         print(
             f"{out}: {counted(found.n_vertices - missed, 'place')}, {counted(robot.walk.n_legs, 'leg')}, "
-            f"{robot.metres:,.0f} m, {counted(len(robot.walk.events), 'event')}, from {robot.start!r}"
+            f"{robot.metres:,.0f} m, {counted(len(robot.walk.events), 'event')}, from {quoted(robot.start)}"
         )
     return 0

@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.encodings.model import RCC5_MODEL, RCC8_MODEL, matches
 from ninefold.encodings.rcc8 import RCC5, RCC8
 from ninefold.errors import BadInput, NinefoldError
@@ -254,5 +255,5 @@ def _confirm(scenario: Scenario, shapes: list[Any]) -> None:
         found = name if fine else _COARSE.get(name, name)
         wanted = scenario.calculus.bases[int(scenario.bases[a, b])]
         if found != wanted:
-            pair = f"{scenario.entities[a]!r} and {scenario.entities[b]!r}"
+            pair = f"{quoted(scenario.entities[a])} and {quoted(scenario.entities[b])}"
             raise NinefoldError(f"the drawing of {pair} is {found} by GEOS and {wanted} in the scenario; please report this")

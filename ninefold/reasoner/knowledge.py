@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.encodings.rcc8 import RCC8
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping.sets import Region
@@ -138,10 +139,11 @@ class KnowledgeBase:
         for name, region in self.names.items():
             if not isinstance(region, Region):
                 raise BadInput(
-                    f"{name!r} is {region!r}; only regions have RCC-8 relations, so only they can be reasoned about"
+                    f"{quoted(name)} is {quoted(region)}; only regions have RCC-8 relations, so only they "
+                    "can be reasoned about"
                 )
             if region.plane is not plane and region.plane != plane:
-                raise DifferentMaps(f"{name!r} is a region of {region.plane!r}, not of {plane!r}")
+                raise DifferentMaps(f"{quoted(name)} is a region of {quoted(region.plane)}, not of {quoted(plane)}")
             self.network.add_entity(name)
         self._state_map()
         self._n_mapped = self.network.n_statements
@@ -172,7 +174,9 @@ class KnowledgeBase:
         for s in atlas.statements:
             for name in (s.a, s.b):
                 if name in sets and name not in regions:
-                    raise BadInput(f"{name!r} is {sets[name]!r}; statements can be reasoned about between regions only")
+                    raise BadInput(
+                        f"{quoted(name)} is {quoted(sets[name])}; statements can be reasoned about between regions only"
+                    )
         return cls(atlas.plane, regions, atlas.statements)
 
     def _say(self, s: Statement | tuple[object, ...]) -> None:
@@ -180,7 +184,7 @@ class KnowledgeBase:
             self.network.add(s.a, s.b, s.relations, s.label, s.weight)
             return
         if not isinstance(s, tuple | list) or not 3 <= len(s) <= 5:
-            raise BadInput(f"a statement is (a, b, relations) and perhaps a label and a weight, not {s!r}")
+            raise BadInput(f"a statement is (a, b, relations) and perhaps a label and a weight, not {quoted(s)}")
         self.network.add(*s)  # type: ignore[arg-type]
 
     def say(

@@ -322,7 +322,7 @@ class Atlas:
         error, plane = UnknownName("set", text, self.names), self.plane
         for kind, names, form in (("place", plane.vertex_names, "vertex:"), ("edge", plane.edge_names, "edge:@")):
             if text in names:
-                error.message += f"; the {kind} of that name is {form + text!r}"
+                error.message += f"; the {kind} of that name is {quoted(form + text)}"
         return error
 
     def name(self, name: str, item: Set | str, *, force: bool = False) -> Set:
@@ -360,7 +360,7 @@ class Atlas:
         if isinstance(item, str):
             return self.parse(item), item
         if not isinstance(item, Point | Line | Region):
-            raise BadInput(f"a set is a point, line or region of the map, or its text, not {item!r}")
+            raise BadInput(f"a set is a point, line or region of the map, or its text, not {quoted(item)}")
         same_map(item, Point(self.plane, 0))
         return item, item.text
 
@@ -421,11 +421,11 @@ def _put_provenance(connection: sqlite3.Connection, record: Provenance | None) -
 
 def _check_name(name: str) -> None:
     if not isinstance(name, str) or not name.strip() or not name.isprintable() or ":" in name:
-        raise BadInput(f"{name!r} cannot name a set: a name is printable text without a colon")
+        raise BadInput(f"{quoted(name)} cannot name a set: a name is printable text without a colon")
 
 
 def _name_taken(name: str) -> BadInput:
-    return BadInput(f"{name!r} is the name of a set already; choose another, or --force (force=True) to replace it")
+    return BadInput(f"{quoted(name)} is the name of a set already; choose another, or --force (force=True) to replace it")
 
 
 def _discard_log_of(path: Path) -> None:

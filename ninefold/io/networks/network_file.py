@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ninefold._files import write_text
+from ninefold._wording import quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
@@ -181,7 +182,7 @@ def _text_of(file: Path) -> str:
     except OSError as error:
         raise BadInput(f"cannot read {file}: {error.strerror or error}") from error
     except ValueError as error:  # a null character in the path
-        raise BadInput(f"cannot read {str(file)!r}: {error}") from None
+        raise BadInput(f"cannot read {quoted(str(file))}: {error}") from None
     other = foreign(raw[:4096], "network")
     if other is not None:
         raise BadInput(wrong_kind(file, other, "network"))

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .source import Source
@@ -199,7 +200,7 @@ def _is_planar(document: dict[str, Any], origin: str) -> bool:
     own = document.get("ninefold")
     if isinstance(own, dict) and "units" in own:
         if own["units"] != "m":
-            raise BadInput(f'{origin}: "units" is {str(own["units"])[:40]!r}; only "m" (planar metres) is known')
+            raise BadInput(f'{origin}: "units" is {quoted(own["units"])}; only "m" (planar metres) is known')
         return True
     crs = document.get("crs")
     if isinstance(crs, dict) and isinstance(crs.get("properties"), dict) and isinstance(crs["properties"].get("name"), str):

@@ -183,7 +183,7 @@ class Mapper:
         """What is unfinished or in doubt: a leg without end, exits never travelled, edges that may be one. O(V + E)."""
         found = []
         if self._leg.started:
-            found.append(f"the walk ends on a leg from {self.place!r}, which is left out")
+            found.append(f"the walk ends on a leg from {quoted(self.place)}, which is left out")
         if still_open := len(self.open_exits):
             first = self.open_exits[0]
             exits = f"{counted(still_open, 'exit')} {'was' if still_open == 1 else 'were'}"
@@ -254,7 +254,7 @@ class Mapper:
             elif isinstance(event, Visit):
                 self._visit(event)
             else:
-                raise WalkError(f"an event is a Visit or Samples, not {event!r}")
+                raise WalkError(f"an event is a Visit or Samples, not {quoted(event)}")
         except BadInput as error:
             raise located(error, f"event {self._events + 1}", event=self._events + 1) from None
         self._events += 1
@@ -273,7 +273,7 @@ class Mapper:
             )
         if self._at < 0:
             if event.edge is not None:
-                raise WalkError(f"edge {event.edge!r} is named at the first place, before any leg")
+                raise WalkError(f"edge {quoted(event.edge)} is named at the first place, before any leg")
             self._at = memory.settle(place, memory.look(place, event.exits))
             return
         leg = self._leg_to(place)
@@ -294,5 +294,5 @@ class Mapper:
 
     def _leg_to(self, place: str) -> Leg:
         if not self._leg.started:
-            raise WalkError(f"no heading between {self.place!r} and {place!r}; a leg has at least one sample")
+            raise WalkError(f"no heading between {quoted(self.place)} and {quoted(place)}; a leg has at least one sample")
         return self._leg.read()

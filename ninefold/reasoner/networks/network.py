@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ninefold._wording import counted
+from ninefold._wording import counted, quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
@@ -96,7 +96,7 @@ class Network:
     def __init__(self, calculus: Calculus | str) -> None:
         self._calculus = calculus_named(calculus) if isinstance(calculus, str) else calculus
         if not isinstance(self._calculus, Calculus):
-            raise BadInput(f"a network needs a calculus or the name of one, not {calculus!r}")
+            raise BadInput(f"a network needs a calculus or the name of one, not {quoted(calculus)}")
         self._index: dict[str, int] = {}
         self._sorts: list[str | None] = []
         self._statements: list[Statement] = []
@@ -170,7 +170,9 @@ class Network:
         known = self._index.get(key)
         if known is not None:
             if sort is not None and self._sorts[known] != sort:
-                raise BadInput(f"entity {key!r} has sort {self._sorts[known]!r}; it cannot be {sort!r} as well")
+                raise BadInput(
+                    f"entity {quoted(key)} has sort {quoted(self._sorts[known])}; it cannot be {quoted(sort)} as well"
+                )
             return known
         return self._new(key, sort)
 
@@ -217,13 +219,13 @@ class Network:
         key_a, key_b = _entity(a), _entity(b)
         mask = self._calculus.relation(relations)
         if not mask:
-            raise BadInput(f"the statement about {key_a!r} and {key_b!r} allows no relation at all")
+            raise BadInput(f"the statement about {quoted(key_a)} and {quoted(key_b)} allows no relation at all")
         if key_a == key_b and not mask & self._calculus.identity:
             equal, said = self._calculus.text(self._calculus.identity), self._calculus.text(mask)
-            raise BadInput(f"{key_a!r} cannot be {said} of itself: without {equal} no entity is related to itself")
+            raise BadInput(f"{quoted(key_a)} cannot be {said} of itself: without {equal} no entity is related to itself")
         if label is not None:
             if not isinstance(label, str) or not label.strip():
-                raise BadInput(f"a label is a non-empty string or None, not {label!r}")
+                raise BadInput(f"a label is a non-empty string or None, not {quoted(label)}")
             label = label.strip()
         cost = checked_weight(weight)
         names = self._names.get(mask)
@@ -343,4 +345,4 @@ def _entity(name: str | int) -> str:
         return name.strip()
     if isinstance(name, int | np.integer) and not isinstance(name, bool):
         return str(name)
-    raise BadInput(f"an entity is named by a non-empty string or an integer, not {name!r}")
+    raise BadInput(f"an entity is named by a non-empty string or an integer, not {quoted(name)}")

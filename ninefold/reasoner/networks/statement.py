@@ -107,5 +107,5 @@ def checked_weight(weight: float | None) -> float | None:
     except OverflowError:
         raise BadInput("a weight is at most 1.8e308; math.inf makes a statement hard") from None
     if math.isnan(cost) or cost < 0:
-        raise BadInput(f"a weight is not negative; math.inf makes a statement hard: {weight!r} was given")
+        raise BadInput(f"a weight is not negative; math.inf makes a statement hard: {quoted(weight)} was given")
     return cost
