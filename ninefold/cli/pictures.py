@@ -30,12 +30,12 @@ def draw(
     as_json: AsJson = False,
 ) -> int:
     """Draw the map with straight lines, its rotation and outer face as they are, and colour the sets you name."""
-    from ninefold._files import refuse_existing, write_text
+    from ninefold._files import refuse_existing, shown, write_text
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
 
     if out.suffix.lower() != ".svg":
-        raise BadInput(f"{out}: pictures are SVG; name a file that ends in .svg")
+        raise BadInput(f"{shown(out)}: pictures are SVG; name a file that ends in .svg")
     refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane

@@ -20,6 +20,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from ninefold._files import shown
 from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, UnknownName
 
@@ -242,7 +243,7 @@ def _head(file: Path) -> bytes:
         with file.open("rb") as stream:
             return stream.read(_HEAD)
     except OSError as error:
-        raise BadInput(f"{file}: cannot be read ({error.strerror or error})") from None
+        raise BadInput(f"{shown(file)}: cannot be read ({error.strerror or error})") from None
     except ValueError as error:
         if isinstance(error, BadInput):
             raise

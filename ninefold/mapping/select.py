@@ -189,7 +189,7 @@ def _numbers(parts: list[Step]) -> list[int]:
 
 def _list(names: Iterable[Step], what: str) -> list[Step]:
     if isinstance(names, str):
-        raise BadInput(f"a {what} takes a list of names, not the string {names!r}; plane.parse reads text")
+        raise BadInput(f"a {what} takes a list of names, not the string {quoted(names)}; plane.parse reads text")
     return list(names)
 
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from ninefold._wording import shortened
 from ninefold.errors import BadInput, DifferentMaps, EmptySet
 
 from ._texts import written
@@ -367,4 +368,5 @@ def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]
 
 
 def _shorten(names: Sequence[str]) -> str:
-    return " ".join(names) if len(names) <= 6 else f"{' '.join(names[:4])} ... ({len(names)} edges)"
+    shown = [shortened(name) for name in names[:6]]
+    return " ".join(shown) if len(names) <= 6 else f"{' '.join(shown[:4])} ... ({len(names)} edges)"

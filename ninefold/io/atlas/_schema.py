@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from ninefold._files import shown
 from ninefold._wording import quoted, shortened
 from ninefold.errors import AtlasError
 
@@ -106,7 +107,7 @@ def check_file(path: Path) -> None:
     except FileNotFoundError:
         raise AtlasError(f"{path}: no such file; `ninefold map SOURCE -o {path.name}` makes an atlas") from None
     except OSError as error:
-        raise AtlasError(f"{path}: cannot be read ({error.strerror or error})") from None
+        raise AtlasError(f"{shown(path)}: cannot be read ({error.strerror or error})") from None
     if len(head) < 100 or not head.startswith(_MAGIC):
         other = foreign(head, "atlas")
         if other is not None:

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ninefold._files import write_text
+from ninefold._files import shown, write_text
 from ninefold._wording import quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
@@ -180,7 +180,7 @@ def _text_of(file: Path) -> str:
     try:
         raw = file.read_bytes()
     except OSError as error:
-        raise BadInput(f"cannot read {file}: {error.strerror or error}") from error
+        raise BadInput(f"cannot read {shown(file)}: {error.strerror or error}") from error
     except ValueError as error:  # a null character in the path
         raise BadInput(f"cannot read {quoted(str(file))}: {error}") from None
     other = foreign(raw[:4096], "network")

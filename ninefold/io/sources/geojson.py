@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._files import shown
 from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
@@ -69,7 +70,7 @@ def read_geojson(path: str | PathLike[str]) -> Source:
     except UnicodeDecodeError:
         raise BadInput(f"{file}: not text in UTF-8, so it is no GeoJSON") from None
     except OSError as error:
-        raise BadInput(f"{file}: cannot be read ({error.strerror or error})") from None
+        raise BadInput(f"{shown(file)}: cannot be read ({error.strerror or error})") from None
     return parse_geojson(text, origin=file.name)
 
 

@@ -22,7 +22,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from ninefold._files import published
+from ninefold._files import published, shown
 from ninefold._wording import quoted
 from ninefold.errors import BadInput, WalkError
 from ninefold.mapping.heading import TAU, Heading
@@ -236,7 +236,7 @@ class WalkReader:
         elif "heading" in found or "headings" in found:
             event = self._heading(found)
         else:
-            keys = ", ".join(map(repr, list(found)[:4])) or "nothing"
+            keys = ", ".join(map(quoted, list(found)[:4])) or "nothing"
             self._fail(f'an event has "place", "heading" or "headings"; this one has {keys}')
         return event
 
@@ -407,7 +407,7 @@ def _opened(path: str | os.PathLike[str]) -> Iterator[Iterator[bytes]]:
         if isinstance(error, WalkError):
             raise
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise WalkError(f"the walk cannot be read: {reason or error}", where=str(path)) from None
+        raise WalkError(f"the walk cannot be read: {reason or error}", where=shown(path)) from None
 
 
 def _line(record: dict[str, Any]) -> str:

@@ -106,7 +106,7 @@ def ask(net: Network, formula: str | Formula, *, seed: int = 0, budget: float | 
     ----------
     At most one check for each combination of truth values of the atoms; as a rule far fewer.
     """
-    asked = parse(formula, net) if isinstance(formula, str) else formula
+    asked = formula if isinstance(formula, Formula) else parse(formula, net)
     deadline = None if budget is None else time.perf_counter() + budget
     kept = net.copy()
     questions = [_Question(kept, asked, negated=negated, seed=seed, deadline=deadline) for negated in (False, True)]
