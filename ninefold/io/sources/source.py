@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from ninefold.mapping import PlaneMap
     from ninefold.mapping.robot.simulated import SimulatedWorld
 
+    from .projection import Projection
+
 __all__ = ["Crossing", "Source"]
 
 
@@ -68,6 +70,9 @@ class Source:
         Where it was read from, for messages.
     notes
         What the reader left out or changed, a sentence each.
+    projection
+        From the longitudes and latitudes of the file to `points`, or None where the file was in planar metres. Messages give
+        places in the coordinates of the file.
 
     Examples
     --------
@@ -87,6 +92,7 @@ class Source:
     labels: tuple[str | None, ...]
     origin: str = ""
     notes: tuple[str, ...] = ()
+    projection: Projection | None = None
 
     @property
     def n_vertices(self) -> int:
@@ -228,12 +234,13 @@ class Source:
     def _crossing_sentence(self) -> str:
         first = self.crossings[0]
         a, b = (self.edge_names[e] for e in first.edges)
-        where = f"({first.at[0]:.1f}, {first.at[1]:.1f})"
-        what = (
-            f"{quoted(a)} meets itself"
-            if a == b
-            else f"{quoted(a)} and {quoted(b)} {'overlap' if first.overlap else 'meet'}"
-        )
+        where = f"({first.at[0]:.1f}, {first.at[1]:.1f}) metres"
+        if self.projection is not None:
+            longitude, latitude = self.projection.degrees(first.at)
+            where = f"longitude {longitude:.6f}, latitude {latitude:.6f}"
+        what = f"{quoted(a)} meets itself"
+        if a != b:
+            what = f"{quoted(a)} and {quoted(b)} {'overlap' if first.overlap else 'meet'}"
         count = sum(crossing.places for crossing in self.crossings)
         return f"edges meet at {counted(count, 'place')} without a vertex: first, {what} near {where}"
 

@@ -22,6 +22,7 @@ Network(rcc8, 2 entities, 2 statements)
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Constraints", "Network"]
+__all__ = ["Constraints", "Network", "require_network"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -338,6 +339,25 @@ class Network:
     def __repr__(self) -> str:
         entities, statements = counted(self.n_entities, "entity", "entities"), counted(self.n_statements, "statement")
         return f"Network({self._calculus.name}, {entities}, {statements})"
+
+
+def require_network(given: object) -> None:
+    """Say what to call instead, unless a network was given.
+
+    Raises
+    ------
+    BadInput
+        For a path, something that holds a network, or anything else.
+    """
+    if isinstance(given, Network):
+        return
+    if isinstance(given, str | PathLike):
+        raise BadInput(
+            f"a Network is needed, and {quoted(str(given))} is text; read_network({quoted(str(given))}) reads a file"
+        )
+    if isinstance(getattr(given, "network", None), Network):
+        raise BadInput(f"a Network is needed, not {quoted(given)}; give its .network")
+    raise BadInput(f"a Network is needed, not {quoted(given)}; Network('rcc8') begins one, read_network reads one")
 
 
 def _entity(name: str | int) -> str:

@@ -33,6 +33,7 @@ from ninefold.encodings.sat import open_solver
 from .conflicts import Shrinker
 from .consistency import Consistent, Inconsistent, check
 from .formula import Formula, parse
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -106,6 +107,7 @@ def ask(net: Network, formula: str | Formula, *, seed: int = 0, budget: float | 
     ----------
     At most one check for each combination of truth values of the atoms; as a rule far fewer.
     """
+    require_network(net)
     asked = formula if isinstance(formula, Formula) else parse(formula, net)
     deadline = None if budget is None else time.perf_counter() + budget
     kept = net.copy()
