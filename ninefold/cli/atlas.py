@@ -23,13 +23,14 @@ def map_source(
     *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="ATLAS", help="The atlas to write.", show_default=False)],
     tolerance: Annotated[
-        float | None, typer.Option(help="For a walk, instead of its header's: radians within which headings are one.")
+        float | None,
+        typer.Option(help="For a walk: headings that differ by less, in radians, count as one. Left out, the log says."),
     ] = None,
     drop_crossing: DropCrossing = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Build the atlas of a walk log or of a source with geometry, whose coordinates are dropped."""
+    """Build a map from a walk log, or from lines with geometry whose coordinates are then dropped, and keep it."""
     from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
     from ninefold.io.formats import recognise
@@ -88,7 +89,7 @@ def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) ->
 
 
 def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
-    """Show counts, outer face, checks, named sets and provenance of an atlas."""
+    """Show what an atlas holds: the size of its map, what was checked, the named sets, and where it all came from."""
     from ninefold.io import Atlas
 
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
@@ -120,7 +121,9 @@ def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
 
 def name(
     atlas: AtlasPath,
-    set_name: Annotated[str, typer.Argument(metavar="NAME", help="Any text without a colon.", show_default=False)],
+    set_name: Annotated[
+        str, typer.Argument(metavar="NAME", help="The name to give it: any text without a colon.", show_default=False)
+    ],
     set_text: Annotated[
         str,
         typer.Argument(
@@ -134,7 +137,7 @@ def name(
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Store a set under a name."""
+    """Store a place, a path or a region of the map under a name."""
     from ninefold.io import Atlas
 
     with progress(f"reading {atlas}"), Atlas.open(atlas) as found:

@@ -19,19 +19,25 @@ def explore(
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="WALK", help="The walk log to write (.jsonl).", show_default=False)
     ],
-    start: Annotated[str | None, typer.Option(help="First place; left out, one of the largest component.")] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Of the order of exits and the noise; left out, no chance.")
+    start: Annotated[
+        str | None, typer.Option(help="The place to begin at; left out, one in the largest connected part.")
     ] = None,
-    noise: Annotated[float, typer.Option(min=0.0, help="Standard deviation of the heading, radians.")] = 0.0,
-    step: Annotated[float, typer.Option(help="Metres between samples.")] = 1.0,
-    exits: Annotated[bool, typer.Option("--exits/--no-exits", help="Log the exits of every place.")] = True,
-    tolerance: Annotated[float | None, typer.Option(help="For the header: radians within which headings are one.")] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of random choices; left out, exits are taken in a fixed order.")
+    ] = None,
+    noise: Annotated[float, typer.Option(min=0.0, help="Standard deviation of the error of a heading, in radians.")] = 0.0,
+    step: Annotated[float, typer.Option(help="Metres between two samples of the heading.")] = 1.0,
+    exits: Annotated[
+        bool, typer.Option("--exits/--no-exits", help="Whether the log tells the exits seen at every place.")
+    ] = True,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Written into the log: headings that differ by less, in radians, count as one.")
+    ] = None,
     drop_crossing: DropCrossing = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Simulate a robot that explores a source depth-first, every place and every way, and write its walk log."""
+    """Let a simulated robot visit every place and walk every way of a source, and write the log of its walk."""
     from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
     from ninefold.io.sources.reading import read_source

@@ -25,14 +25,18 @@ LISTED = 1000
 """Entities up to which ``check --json`` writes the scenario out; it holds every pair."""
 
 NetPath = Annotated[
-    Path, typer.Argument(metavar="NET", help="A network: .csp, .csv or .json.", show_default=False)
+    Path, typer.Argument(metavar="NET", help="A file of declared relations: .csp, .csv or .json.", show_default=False)
 ]  # fmt: skip
 CalculusName = Annotated[
     str | None,
-    typer.Option("--calculus", help="rcc8, rcc5, point, allen or a .spec file, where NET does not say.", show_default=False),
+    typer.Option(
+        "--calculus",
+        help="rcc8, rcc5, point, allen or a .spec file; needed where NET is not in rcc8 and does not say.",
+        show_default=False,
+    ),
 ]
 Budget = Annotated[float | None, typer.Option(min=0.001, help="Seconds after which to give up.", show_default=False)]
-Seed = Annotated[int, typer.Option(min=0, help="Of the search; the same seed gives the same run.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of random choices; the same seed gives the same answer.")]
 
 
 def check(

@@ -22,14 +22,20 @@ def draw(
     layout: LayoutName = "tutte",
     highlight: Annotated[
         list[str] | None,
-        typer.Option("--highlight", metavar="SET", help="Colour a stored name or a set as for `name`; up to 7 times."),
+        typer.Option(
+            "--highlight", metavar="SET", help="A named set, or one such as cycle:a,b,c, to colour; up to 7 times."
+        ),
     ] = None,
-    title: Annotated[str | None, typer.Option(help="A heading of its own.", show_default=False)] = None,
-    theme: Annotated[str, typer.Option(metavar="auto|light|dark", help="auto follows the reader's preference.")] = "auto",
+    title: Annotated[
+        str | None, typer.Option(help="What stands above the picture; left out, the name of the atlas.", show_default=False)
+    ] = None,
+    theme: Annotated[
+        str, typer.Option(metavar="auto|light|dark", help="Colours; auto follows the setting of whoever looks at it.")
+    ] = "auto",
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Draw the map with straight lines, its rotation and outer face as they are, and colour the sets you name."""
+    """Draw the map, with the ways around each place in their order, and colour the sets you name."""
     from ninefold._files import refuse_existing, shown, write_text
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
@@ -58,16 +64,22 @@ def verify(
     atlas: AtlasPath,
     *,
     pairs: Annotated[int, typer.Option(min=1, max=1_000_000, help="How many pairs of sets to compare.")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="Of the sets and pairs drawn.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random sets and pairs.")] = 0,
     layout: LayoutName = "schnyder",
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE.svg", help="A picture of the first disagreement.", show_default=False),
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FILE.svg",
+            help="Where to draw the first pair that disagrees, if one does.",
+            show_default=False,
+        ),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Hold symbolic relations against shapely on a drawing whose planarity, rotation and outer face are checked too."""
+    """Check the map and its relations on a drawing of it: the same pairs of sets, related by shapely from coordinates."""
     from ninefold._files import refuse_existing, write_text
     from ninefold.io import Atlas
 

@@ -22,19 +22,28 @@ _MATRIX = "IBE"
 def relate(
     atlas: AtlasPath,
     x: Annotated[
-        str | None, typer.Argument(metavar="X", help="A stored name, or a set as for `name`.", show_default=False)
+        str | None,
+        typer.Argument(
+            metavar="X",
+            help="A name that was stored, or a set such as cycle:a,b,c; `ninefold name --help` shows the forms.",
+            show_default=False,
+        ),
     ] = None,
-    y: Annotated[str | None, typer.Argument(metavar="Y", help="The same.", show_default=False)] = None,
+    y: Annotated[
+        str | None,
+        typer.Argument(metavar="Y", help="The set that X is related to, written in the same way.", show_default=False),
+    ] = None,
     *,
-    every: Annotated[bool, typer.Option("--all", help="All pairs of the named sets, into a table.")] = False,
-    faces: Annotated[bool, typer.Option("--faces", help="All pairs of the bounded faces, into a table.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Write a table of all pairs of the named sets.")] = False,
+    faces: Annotated[bool, typer.Option("--faces", help="Write a table of all pairs of the bounded faces.")] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The table, .csv or .parquet.", show_default=False)
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="The file of the table: .csv or .parquet.", show_default=False),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Tell how X lies to Y: its name, DE-9IM and, for two regions, RCC-8; or write the table of all pairs."""
+    """Tell how X lies to Y, as a word, a DE-9IM matrix and, for two regions, in RCC-8; or write a table of all pairs."""
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
 

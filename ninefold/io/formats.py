@@ -162,7 +162,7 @@ FORMATS = (
         "proof",
         "a proof of inconsistency",
         (),
-        lambda head: head.startswith(b"ninefold proof"),
+        lambda head: head.startswith(b"ninefold-proof"),
         use="`ninefold prove NET FILE` confirms it",
     ),
     Format("svg", "a picture", (".svg",), lambda head: head.lstrip().startswith((b"<svg", b"<?xml"))),

@@ -63,6 +63,8 @@ def files(tmp_path):
         nf.io.write_network(net, tmp_path / f"net.{suffix}")
     write_relations(tmp_path / "table.csv", ["a", "b"], [[0, 1]], [0])
     nf.draw(source.to_map()).save(tmp_path / "map.svg")
+    net.add("a", "b", "DC")
+    (tmp_path / "proof.log").write_text(nf.check(net, proof=True).proof.to_text())
     nouns = {
         "walk.jsonl": "a walk log",
         "house.atlas": "an atlas",
@@ -72,6 +74,7 @@ def files(tmp_path):
         "net.json": "a relation network",
         "table.csv": "a table of relations",
         "map.svg": "a picture",
+        "proof.log": "a proof of inconsistency",
     }
     return {tmp_path / name: noun for name, noun in nouns.items()}
 

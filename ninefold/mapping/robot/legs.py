@@ -91,10 +91,10 @@ class LegReader:
         if first is None:
             first = last = yaws[0]
             turn = 0.0
-        show = self._unit.heading
         for yaw in yaws:
             change = remainder(yaw - last, TAU)
             if not -_HALF_TURN < change < _HALF_TURN:
+                show = self._unit.heading
                 raise WalkError(
                     f"successive headings {show(last)} and {show(yaw)} differ by half a turn, so the way between "
                     "them is unknown; sample more often"
