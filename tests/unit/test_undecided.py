@@ -252,7 +252,3 @@ def test_reading_labels_of_an_engine():
     assert (labels.diagonal() == net.calculus.identity).all()
     assert labels[0, 2] == net.calculus.relation("DC")
     assert (labels == np.array([[net.calculus.converse_of(int(m)) for m in row] for row in labels]).T).all()
-    assert not engine.state_more(0, 2, net.calculus.relation("EC"))
-    assert engine.state_more(2, 1, net.calculus.relation("DC"))
-    assert engine.close()
-    assert engine.labels()[1, 2] == net.calculus.relation("DC")
