@@ -208,13 +208,15 @@ def _for_wide_integers(dispatcher: Any) -> Any:
     array, as int32 from another, and as a literal from a third place. Each of these costs as much as the first, and all
     of them do the same.
     """
-    from numba.core import types
+    from numba.core import types as known
 
+    numba_types: Any = known
     template = dispatcher.get_call_template
 
     def wide(argument: Any) -> Any:
-        argument = types.unliteral(argument)
-        return types.int64 if isinstance(argument, types.Integer) and argument.signed else argument
+        argument = numba_types.unliteral(argument)
+        signed = isinstance(argument, numba_types.Integer) and argument.signed
+        return numba_types.int64 if signed else argument
 
     dispatcher.get_call_template = lambda args, kws: template(tuple(map(wide, args)), kws)
     return dispatcher

@@ -203,7 +203,7 @@ class RecordedClosure:
         np.fill_diagonal(self.labels, calculus.identity)
         self._trail = np.empty((4 * n + 256, 5), dtype=np.int64)
         self._head = self._top = self._work = 0
-        none = np.zeros(0, dtype=dtype)
+        none: NDArray[np.integer] = np.zeros(0, dtype=dtype)
         self._tables = _Tables(
             calculus.converse_table if calculus.converse_table is not None else none,
             calculus.base_converse.astype(np.int64),
