@@ -23,7 +23,10 @@ __all__ = ["Engine"]
 _PLAIN_SLICE = 1_000
 _FIRST_SLICE = 20_000
 _SLICE_SECONDS = 0.05
-_TICK_STEPS, _CONFLICT_STEPS = 5, 20_000  # a search that comes to many conflicts comes to many more
+_TICK_STEPS = 7
+"""Elementary steps for one of the register TICKS."""
+_CONFLICT_STEPS = 7_000
+"""For each node: several times what a conflict takes, as a search that comes to a few conflicts comes to many more."""
 _KEEP_LBD = 2
 _REDUCE_FIRST, _REDUCE_STEP = 2000, 500
 
@@ -106,7 +109,7 @@ class Engine:
     def _form(self, kernel: Any) -> Any:
         """Run plain while the work is small, compiled from the slice on that is known to be worth it."""
         reg = self.state.reg
-        done = _TICK_STEPS * int(reg[c.TICKS]) + _CONFLICT_STEPS * int(reg[c.CONFLICTS])
+        done = _TICK_STEPS * int(reg[c.TICKS]) + _CONFLICT_STEPS * self.frame.n * int(reg[c.CONFLICTS])
         new = max(done, self._expected) - self._counted
         self._counted += new
         return kernel.for_work(new)
