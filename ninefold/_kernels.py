@@ -93,7 +93,7 @@ class Kernel(Generic[P, R]):
         if self._done_plain * STEP_SECONDS <= LOAD_SECONDS:  # the answer whatever is loaded and cached
             return self.plain
         wait = seconds_to_compiled(
-            numba_loaded="numba" in sys.modules, cached=self.is_cached, compile_seconds=self.compile_seconds
+            numba_loaded=_numba_is_loaded(), cached=self.is_cached, compile_seconds=self.compile_seconds
         )
         return self.compiled if self._done_plain * STEP_SECONDS > wait else self.plain
 
@@ -194,6 +194,10 @@ def cache_folders(source: Path) -> list[Path]:
     else:
         personal = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
     return [parent / "__pycache__", personal / "numba" / unique]
+
+
+def _numba_is_loaded() -> bool:
+    return "numba" in sys.modules
 
 
 @functools.cache
