@@ -1,4 +1,4 @@
-"""Proofs of inconsistency, and a checker in plain Python that shares no code with the engine.
+"""Proofs of inconsistency, and a checker that shares no code with the engine.
 
 A proof is text. Its first line names the format, the calculus, the number of entities and a digest of the constraints; its
 second the pairs that closure looks at, ``pairs all`` or ``pairs i-j i-j ...``. Then comes one learned clause a line, each
@@ -17,22 +17,19 @@ propagation).
 from __future__ import annotations
 
 import hashlib
-from collections import deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ninefold._kernels import kernel
 from ninefold.errors import BadInput
 
+from ._replay import TOP, append, arcs_of, assume, new_replay, propagate, state_labels, undo
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from ninefold.encodings.calculus import Calculus
-
+    from ._replay import Literal
     from .network import Network
 
-__all__ = ["Proof", "prove"]
-
-Literal = tuple[int, int, int]
+__all__ = ["Proof", "digest_of", "prove"]
 
 _MAGIC = "ninefold-proof 1"
 
@@ -102,7 +99,8 @@ def prove(net: Network, proof: Proof) -> None:
 
     Notes
     -----
-    Plain Python, meant to be read: each clause costs one closure from what the constraints give.
+    Each clause costs one closure from what the constraints give. Nothing of the engine is used (see
+    `ninefold.reasoner.networks._replay`).
 
     Examples
     --------
@@ -117,96 +115,38 @@ def prove(net: Network, proof: Proof) -> None:
         raise BadInput("the proof is of another network: calculus, size or digest of the constraints differ")
     if not proof.clauses or proof.clauses[-1]:
         raise BadInput("the proof does not end in the empty clause, so it proves nothing")
-    checker = _Checker(net.calculus, net.n_entities, proof.pairs, net.constraints().triples())
-    for number, clause in enumerate(proof.clauses, 1):
-        if not checker.follows(clause):
+    stated, full = net.constraints().triples(), net.calculus.universal
+    replay = new_replay(net.calculus, net.n_entities, proof.pairs, stated, proof.clauses)
+    work = 10 * len(replay.head) * len(proof.clauses)
+    if not start.for_work(work)(replay, *arcs_of(replay, stated)):
+        return
+    follows = confirm.for_work(work)
+    for number, clause in enumerate(proof.clauses):
+        outcome = follows(replay, number, full)
+        if not outcome:
             shown = "the empty clause" if not clause else " ".join(map(str, clause[0])) + (" ..." if len(clause) > 1 else "")
             raise BadInput(
-                f"clause {number} of {len(proof.clauses)} ({shown}) does not follow from what was confirmed before"
+                f"clause {number + 1} of {len(proof.clauses)} ({shown}) does not follow from what was confirmed before"
             )
-        checker.keep(clause)
+        if outcome == 3:
+            return
 
 
-class _Checker:
-    """Labels of pairs, refined by closure and by clauses, with an undo trail."""
+@kernel(_nrt=False)
+def start(s, arcs, masks):  # type: ignore[no-untyped-def]
+    """State the constraints and close them; return False when a label runs empty, and then everything follows."""
+    return state_labels(s, arcs, masks) and propagate(s)
 
-    def __init__(
-        self,
-        calculus: Calculus,
-        n: int,
-        pairs: tuple[tuple[int, int], ...] | None,
-        constraints: Iterable[tuple[int, int, int]],
-    ) -> None:
-        self._calculus = calculus
-        self._near: list[set[int]] = [set() for _ in range(n)]
-        self._label: dict[tuple[int, int], int] = {}
-        self._clauses: list[tuple[Literal, ...]] = []
-        self._at: dict[tuple[int, int], list[int]] = {}
-        self._trail: list[tuple[int, int, int]] = []
-        self._queue: deque[tuple[int, int]] = deque()
-        triples = list(constraints)
-        kept = [(i, j) for i in range(n) for j in range(i)] if pairs is None else [*pairs, *((i, j) for i, j, _ in triples)]
-        for i, j in kept:
-            self._near[i].add(j)
-            self._near[j].add(i)
-            self._label[i, j] = self._label[j, i] = calculus.universal
-        self._holds = all(self._refine(i, j, mask) for i, j, mask in triples) and self._propagate()
 
-    def follows(self, clause: Sequence[Literal]) -> bool:
-        """Say whether assuming every literal false empties a label."""
-        if not self._holds:
-            return True
-        level = len(self._trail)
-        universal = self._calculus.universal
-        fine = all(self._refine(i, j, universal & ~mask) for i, j, mask in clause) and self._propagate()
-        self._queue.clear()
-        while len(self._trail) > level:
-            i, j, mask = self._trail.pop()
-            self._label[i, j], self._label[j, i] = mask, self._calculus.converse_of(mask)
-        return not fine
-
-    def keep(self, clause: tuple[Literal, ...]) -> None:
-        """Use a confirmed clause from here on."""
-        self._clauses.append(clause)
-        for i, j, _ in clause:
-            self._at.setdefault((min(i, j), max(i, j)), []).append(len(self._clauses) - 1)
-        self._holds = self._holds and self._unit(clause) and self._propagate()
-
-    def _refine(self, i: int, j: int, mask: int) -> bool:
-        """Intersect the label of a pair; False if nothing is left."""
-        old = self._label.get((i, j))
-        if old is None:
-            raise BadInput(f"a clause is about the pair {i}, {j}, which is not among the proof's pairs")
-        new = old & mask
-        if new != old:
-            self._trail.append((i, j, old))
-            self._label[i, j], self._label[j, i] = new, self._calculus.converse_of(new)
-            self._queue.append((i, j))
-        return new != 0
-
-    def _propagate(self) -> bool:
-        compose, label = self._calculus.compose, self._label
-        while self._queue:
-            i, j = self._queue.popleft()
-            for k in self._near[i] & self._near[j]:
-                if not self._refine(i, k, compose(label[i, j], label[j, k])):
-                    return False
-                if not self._refine(k, j, compose(label[k, i], label[i, j])):
-                    return False
-            for number in self._at.get((min(i, j), max(i, j)), ()):
-                if not self._unit(self._clauses[number]):
-                    return False
-        return True
-
-    def _unit(self, clause: tuple[Literal, ...]) -> bool:
-        """Refine by the only literal that can still hold; False if none can."""
-        open_literal = None
-        for i, j, mask in clause:
-            if self._label[i, j] & mask:
-                if open_literal is not None:
-                    return True
-                open_literal = (i, j, mask)
-        return open_literal is not None and self._refine(*open_literal)
+@kernel(_nrt=False)
+def confirm(s, clause, full):  # type: ignore[no-untyped-def]
+    """Say of a clause whether it follows (bit 0), and take it up: whether everything follows from here on (bit 1)."""
+    level = s.reg[TOP]
+    if assume(s, clause, full):
+        undo(s, level)
+        return 0
+    undo(s, level)
+    return 1 if append(s, clause) else 3
 
 
 def _pair(word: str, n: int) -> tuple[int, int]:
