@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ._replay import Literal
     from .network import Network
 
-__all__ = ["Proof", "digest_of", "prove"]
+__all__ = ["Proof", "check_subject", "digest_of", "prove"]
 
 _MAGIC = "ninefold-proof 1"
 
@@ -89,6 +89,14 @@ def digest_of(net: Network) -> str:
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()
 
 
+def check_subject(net: Network, proof: Proof) -> None:
+    """Raise `BadInput` unless a proof is of this network and ends in the empty clause."""
+    if proof.calculus != net.calculus.name or proof.n != net.n_entities or proof.digest != digest_of(net):
+        raise BadInput("the proof is of another network: calculus, size or digest of the constraints differ")
+    if not proof.clauses or proof.clauses[-1]:
+        raise BadInput("the proof does not end in the empty clause, so it proves nothing")
+
+
 def prove(net: Network, proof: Proof) -> None:
     """Confirm a proof that a network is inconsistent.
 
@@ -111,10 +119,7 @@ def prove(net: Network, proof: Proof) -> None:
     ...     _ = net.add(a, b, r)
     >>> prove(net, check(net, proof=True).proof)
     """
-    if proof.calculus != net.calculus.name or proof.n != net.n_entities or proof.digest != digest_of(net):
-        raise BadInput("the proof is of another network: calculus, size or digest of the constraints differ")
-    if not proof.clauses or proof.clauses[-1]:
-        raise BadInput("the proof does not end in the empty clause, so it proves nothing")
+    check_subject(net, proof)
     stated, full = net.constraints().triples(), net.calculus.universal
     replay = new_replay(net.calculus, net.n_entities, proof.pairs, stated, proof.clauses)
     work = 10 * len(replay.head) * len(proof.clauses)
