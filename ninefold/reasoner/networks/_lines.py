@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ninefold._kernels import kernel
 
-from ._premises import BEGIN, BY_CLAUSE, CLOSED, DENIED, OPEN, TRIANGLE, find
+from ._premises import BEGIN, BY_CLAUSE, CLOSED, DENIED, OPEN, TRIANGLE, find, key_of
 from .integers import DELETE, END
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def write_triangle(s, w, x, out, at, hints, row):  # type: ignore[no-untyped-def
         at += 1
         at = write_numbers_of(s, x, out, at, first, need_first)
         at = write_numbers_of(s, x, out, at, second, need_second)
-        slot = find(w.keys, (pair * (s.start.size - 1) + s.head[first]) * b + t)
+        slot = find(w.keys, key_of(s, pair, first, t, b))
         for r in range(b):
             if need_first >> r & 1 == 0:
                 out[at] = x.composed[slot, r]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BEGIN", "BY_CLAUSE", "CLOSED", "DENIED", "N_KEYS", "N_ROWS", "OPEN", "TRIANGLE",
-    "ROW_COLUMNS", "Walk", "backward", "find", "forward", "rehash",
+    "ROW_COLUMNS", "Walk", "backward", "find", "forward", "key_of", "rehash",
 ]  # fmt: skip
 
 # rows
@@ -207,7 +207,7 @@ def note_triangle(s, w, pair, t, first, second, full):  # type: ignore[no-untype
     w.used[one] = True
     w.used[two] = True
     note(w, TRIANGLE, pair, t, first, second, b_one, b_two)
-    key = (pair * (s.start.size - 1) + s.head[first]) * b + t
+    key = key_of(s, pair, first, t, b)
     at = find(w.keys, key)
     if w.keys[at] != key:
         w.keys[at] = key
@@ -227,10 +227,16 @@ def bits(mask):  # type: ignore[no-untyped-def]
 
 
 @kernel(_nrt=False)
+def key_of(s, pair, first, t, b):  # type: ignore[no-untyped-def]
+    """Return the key of a pair, the head of an arc from its tail, and a base relation."""
+    return (int(pair) * (s.start.size - 1) + int(s.head[first])) * b + int(t)
+
+
+@kernel(_nrt=False)
 def find(keys, key):  # type: ignore[no-untyped-def]
     """Return where a key is, or where it goes."""
     last = keys.size - 1
-    at = (key * 40503 ^ key >> 15) & last
+    at = ((key & 0xFFFFFFFF) * 40503 >> 7 ^ key >> 32) & last
     while keys[at] != -1 and keys[at] != key:
         at = (at + 1) & last
     return at

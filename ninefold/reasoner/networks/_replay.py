@@ -49,10 +49,8 @@ CLAUSE = -3
 # registers
 TOP = 0  # entries on the trail
 SEEN = 1  # entries whose clauses have been visited
-QUEUE_FIRST = 2
-QUEUE_SIZE = 3
-LIMIT = 4  # clauses from this one on are not used
-N_REGISTERS = 5
+LIMIT = 2  # clauses from this one on are not used
+N_REGISTERS = 3
 
 
 class Replay(NamedTuple):
@@ -72,10 +70,12 @@ class Replay(NamedTuple):
     """(m, m / 256 or 1) and with the rest of it."""
     converse: NDArray[np.int32]
     """(m,)."""
+    size: NDArray[np.int32]
+    """(m,) number of base relations."""
     queue: NDArray[np.int32]
-    """(A,) ring."""
-    queued: NDArray[np.bool_]
-    """(A,)."""
+    """(2, b + 1) first and last queued pair of each size, or -1."""
+    behind: NDArray[np.int32]
+    """(A,) the next one, -1 for the last, or -2 for a pair that is not queued."""
     trail: NDArray[np.int32]
     """(entries, TRAIL_COLUMNS), room for every base relation of every pair."""
     literals: NDArray[np.int32]
@@ -122,7 +122,8 @@ def new_replay(
         keys = tail * n + head
     else:
         ends = np.array([*pairs, *((i, j) for i, j, _ in stated)], dtype=np.int64).reshape(-1, 2)
-        keys = np.unique(np.concatenate([ends[:, 0] * n + ends[:, 1], ends[:, 1] * n + ends[:, 0]]))
+        keys = np.sort(np.concatenate([ends[:, 0] * n + ends[:, 1], ends[:, 1] * n + ends[:, 0]]))
+        keys = keys[np.diff(keys, prepend=-1) > 0]
         tail, head = keys // max(n, 1), keys % max(n, 1)
     start = np.zeros(n + 1, dtype=np.int64)
     np.cumsum(np.bincount(tail, minlength=n), out=start[1:])
@@ -138,8 +139,9 @@ def new_replay(
         low=low,
         high=high,
         converse=converse,
-        queue=np.empty(n_arcs + 1, dtype=np.int32),
-        queued=np.zeros(n_arcs, dtype=np.bool_),
+        size=np.array([mask.bit_count() for mask in range(len(converse))], dtype=np.int32),
+        queue=np.full((2, calculus.n_bases + 1), -1, dtype=np.int32),
+        behind=np.full(n_arcs, -2, dtype=np.int32),
         trail=np.empty((n_arcs // 2 * calculus.n_bases + 1, TRAIL_COLUMNS), dtype=np.int32),
         literals=literals,
         place=place,
@@ -224,11 +226,26 @@ def narrow(s, arc, new, why, other):  # type: ignore[no-untyped-def]
     reg[TOP] = at + 1
     s.label[arc] = new
     s.label[back] = s.converse[new]
-    if not s.queued[arc]:
-        s.queued[arc] = True
-        place = reg[QUEUE_FIRST] + reg[QUEUE_SIZE]
-        s.queue[place if place < s.queue.size else place - s.queue.size] = arc
-        reg[QUEUE_SIZE] += 1
+    if s.behind[arc] == -2:
+        size = s.size[new]
+        if s.queue[0, size] < 0:
+            s.queue[0, size] = arc
+        else:
+            s.behind[s.queue[1, size]] = arc
+        s.queue[1, size] = arc
+        s.behind[arc] = -1
+
+
+@kernel(_nrt=False)
+def take_smallest(s):  # type: ignore[no-untyped-def]
+    """Take the pair that was queued first among those of the smallest size, or return -1."""
+    for size in range(s.queue.shape[1]):
+        pair = s.queue[0, size]
+        if pair >= 0:
+            s.queue[0, size] = s.behind[pair]
+            s.behind[pair] = -2
+            return pair
+    return -1
 
 
 @kernel(_nrt=False)
@@ -241,17 +258,8 @@ def undo(s, top):  # type: ignore[no-untyped-def]
         s.label[s.back[arc]] = s.converse[s.trail[at, OLD]]
     reg[TOP] = top
     reg[SEEN] = top
-    clear_queue(s)
-
-
-@kernel(_nrt=False)
-def clear_queue(s):  # type: ignore[no-untyped-def]
-    """Empty the queue."""
-    reg = s.reg
-    while reg[QUEUE_SIZE] > 0:
-        s.queued[s.queue[reg[QUEUE_FIRST]]] = False
-        reg[QUEUE_FIRST] = reg[QUEUE_FIRST] + 1 if reg[QUEUE_FIRST] + 1 < s.queue.size else 0
-        reg[QUEUE_SIZE] -= 1
+    while take_smallest(s) >= 0:
+        pass
 
 
 @kernel(_nrt=False)
@@ -264,12 +272,9 @@ def propagate(s):  # type: ignore[no-untyped-def]
             reg[SEEN] += 1
             if s.watch[pair] >= 0 and not visit_clauses(s, pair):
                 return False
-        if reg[QUEUE_SIZE] == 0:
+        pair = take_smallest(s)
+        if pair < 0:
             return True
-        pair = s.queue[reg[QUEUE_FIRST]]
-        reg[QUEUE_FIRST] = reg[QUEUE_FIRST] + 1 if reg[QUEUE_FIRST] + 1 < s.queue.size else 0
-        reg[QUEUE_SIZE] -= 1
-        s.queued[pair] = False
         if not close_triangles(s, pair):
             return False
 
