@@ -18,7 +18,9 @@ def refusal(cnf: str, lrat: str) -> str | None:
         literals, hints = rest[:at], rest[at + 1 : -1]
         if number in clauses or rest[-1] != 0:
             return f"{line}: not of the format"
-        if not _by_units(clauses, literals, [hint for hint in hints if hint > 0]) and not _by_pivot(clauses, literals, hints):
+        if not _by_units(clauses, literals, [hint for hint in hints if hint > 0]) and not _by_pivot(
+            clauses, literals, hints
+        ):
             return f"{line}: does not follow"
         if not literals:
             return None

@@ -1,30 +1,56 @@
 """Walk the trail of a replay backwards, and note only the exclusions that the end needs.
 
 An *exclusion* is a pair and a base relation it cannot have. Every entry of the trail excludes a few; `walk` keeps for each
-pair which exclusions are needed by what was noted so far, and when it takes back the entry that made one it notes a row: what
-is excluded, and by which others. Read from the last row to the first they are a derivation. Exclusions that an assumption
-or a clause made are rows too, so the walk goes through learned clauses, each only if it is needed, down to the statements.
+pair which exclusions are needed by what was noted so far, and when it takes back the entry that made one it notes a row:
+what is excluded, and by which others. Read from the last row to the first they are a derivation. Exclusions that an
+assumption or a clause made are rows too, so the walk goes through learned clauses, each only if it is needed, down to the
+statements.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from ninefold._kernels import kernel
 
 from ._replay import (
-    ASSUMED, CLAUSE, LIMIT, NEW, OLD, OTHER, PAIR, SEEN, TOP, WHY,
-    append, assume, propagate, state_labels, undo,
+    ASSUMED,
+    CLAUSE,
+    LIMIT,
+    NEW,
+    OLD,
+    OTHER,
+    PAIR,
+    SEEN,
+    TOP,
+    WHY,
+    append,
+    assume,
+    propagate,
+    state_labels,
+    undo,
 )  # fmt: skip
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 __all__ = [
-    "BEGIN", "BY_CLAUSE", "CLOSED", "DENIED", "N_KEYS", "N_ROWS", "OPEN", "TRIANGLE",
-    "ROW_COLUMNS", "Walk", "backward", "find", "forward", "key_of", "rehash",
+    "BEGIN",
+    "BY_CLAUSE",
+    "CLOSED",
+    "DENIED",
+    "N_KEYS",
+    "N_ROWS",
+    "OPEN",
+    "ROW_COLUMNS",
+    "TRIANGLE",
+    "Walk",
+    "backward",
+    "find",
+    "forward",
+    "key_of",
+    "rehash",
 ]  # fmt: skip
 
 # rows
@@ -58,7 +84,7 @@ class Walk(NamedTuple):
     """Hash table of triangles with one base relation: (pair, middle, t), or -1."""
     masks: NDArray[np.int32]
     """Which base relations of the first arc their clauses are needed for."""
-    count: NDArray[np.int64]
+    filled: NDArray[np.int64]
     """Rows, and keys, so far."""
 
 
@@ -122,7 +148,7 @@ def backward(s, w, clause, full):  # type: ignore[no-untyped-def]
 @kernel(_nrt=False)
 def short_of_room(s, w, entries, b):  # type: ignore[no-untyped-def]
     """Tell whether walking over so many entries may write more than there is room for."""
-    return (w.count[N_ROWS] + entries * b + 3 > w.rows.shape[0]) | (2 * (w.count[N_KEYS] + entries * b) > w.keys.size)
+    return (w.filled[N_ROWS] + entries * b + 3 > w.rows.shape[0]) | (2 * (w.filled[N_KEYS] + entries * b) > w.keys.size)
 
 
 @kernel(_nrt=False)
@@ -162,10 +188,10 @@ def walk(s, w, top, full):  # type: ignore[no-untyped-def]
 @kernel(_nrt=False)
 def note(w, kind, a, b, c, d, e, f):  # type: ignore[no-untyped-def]
     """Append a row."""
-    at = w.count[N_ROWS]
+    at = w.filled[N_ROWS]
     row = w.rows[at]
     row[0], row[1], row[2], row[3], row[4], row[5], row[6] = kind, a, b, c, d, e, f
-    w.count[N_ROWS] = at + 1
+    w.filled[N_ROWS] = at + 1
 
 
 @kernel(_nrt=False)
@@ -200,7 +226,9 @@ def note_triangle(s, w, pair, t, first, second, full):  # type: ignore[no-untype
     for r in range(b):
         if b_one >> r & 1 == 0:
             b_two |= support[t, r]
-    if bits((a_one & ~needed_one) | ((a_two & ~needed_two) << b)) <= bits((b_one & ~needed_one) | ((b_two & ~needed_two) << b)):
+    if bits((a_one & ~needed_one) | ((a_two & ~needed_two) << b)) <= bits(
+        (b_one & ~needed_one) | ((b_two & ~needed_two) << b)
+    ):
         b_one, b_two = a_one, a_two
     need[one] |= b_one if one == first else s.converse[b_one]
     need[two] |= b_two if two == second else s.converse[b_two]
@@ -212,7 +240,7 @@ def note_triangle(s, w, pair, t, first, second, full):  # type: ignore[no-untype
     if w.keys[at] != key:
         w.keys[at] = key
         w.masks[at] = 0
-        w.count[N_KEYS] += 1
+        w.filled[N_KEYS] += 1
     w.masks[at] |= full ^ b_one
 
 

@@ -109,7 +109,7 @@ def new_replay(
     Raises
     ------
     BadInput
-        A clause about a pair that is not kept.
+        A pair that is not of two entities, or a clause about a pair that is not kept.
     TooLarge
         More than 14 base relations.
     """
@@ -122,6 +122,8 @@ def new_replay(
         keys = tail * n + head
     else:
         ends = np.array([*pairs, *((i, j) for i, j, _ in stated)], dtype=np.int64).reshape(-1, 2)
+        if ends.size and not (ends.min() >= 0 and ends.max() < n and (ends[:, 0] != ends[:, 1]).all()):
+            raise BadInput(f"the proof speaks of a pair that is not of two entities below {n}")
         keys = np.sort(np.concatenate([ends[:, 0] * n + ends[:, 1], ends[:, 1] * n + ends[:, 0]]))
         keys = keys[np.diff(keys, prepend=-1) > 0]
         tail, head = keys // max(n, 1), keys % max(n, 1)
@@ -165,9 +167,14 @@ def _pack(
     """Return the literals of clauses over pairs, and where each clause starts; literals on one pair become one."""
     size = np.array([len(clause) for clause in clauses], dtype=np.int64)
     rows = np.array([literal for clause in clauses for literal in clause], dtype=np.int64).reshape(-1, 3)
+    if rows.size and not (rows[:, :2].min() >= 0 and rows[:, :2].max() < n):
+        raise BadInput(f"the proof speaks of a pair that is not of two entities below {n}")
     low, high = np.minimum(rows[:, 0], rows[:, 1]), np.maximum(rows[:, 0], rows[:, 1])
-    arc = np.searchsorted(keys, low * n + high)
-    missing = np.flatnonzero((arc == keys.size) | (keys[np.minimum(arc, keys.size - 1)] != low * n + high))
+    key = low * n + high
+    arc = np.searchsorted(keys, key)
+    kept = arc < keys.size
+    kept[kept] = keys[arc[kept]] == key[kept]
+    missing = np.flatnonzero(~kept)
     if missing.size:
         i, j, _ = rows[missing[0]].tolist()
         raise BadInput(f"a clause is about the pair {i}, {j}, which is not among the proof's pairs")

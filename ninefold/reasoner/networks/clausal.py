@@ -15,15 +15,15 @@ excluded; nothing is left for (i, k). All of this is unit propagation, so ``not 
 propagation (RUP): a label that becomes smaller costs one line a base relation, seven at most with eight, and only those
 exclusions are written that are used further on.
 
-*A learned clause* says "pair 1 is in M1, or pair 2 in M2, or ...". A pair is in a mask exactly if one of the mask's variables
-is true, so over variables it is one long clause, and a mask needs no variable of its own. What it excludes, when all literals
-but one fail, is again one line a base relation: the clauses "no two base relations" do the rest.
+*A learned clause* says "pair 1 is in M1, or pair 2 in M2, or ...". A pair is in a mask exactly if one of the mask's
+variables is true, so over variables it is one long clause, and a mask needs no variable of its own. What it excludes, when
+all literals but one fail, is again one line a base relation: the clauses "no two base relations" do the rest.
 
 *Deriving it* takes many exclusions that hold only as long as all its literals are denied. So each derivation begins with one
 fresh variable d, the *denial*, defined by ``d or x or x' or ...`` and ``not d or not x`` for each of the clause's variables;
-those are lines by resolution asymmetric tautology (RAT), and they are so trivially, as d occurs nowhere else. Every exclusion
-under the denial is then a clause of two literals, ``not d or not x(i, j, t)``. When a pair has nothing left, ``not d``
-follows, and the learned clause with it; what hung on d is deleted.
+those are lines by resolution asymmetric tautology (RAT), and they are so trivially, as d occurs nowhere else. Every
+exclusion under the denial is then a clause of two literals, ``not d or not x(i, j, t)``. When a pair has nothing left,
+``not d`` follows, and the learned clause with it; what hung on d is deleted.
 
 Only what the end needs is written: the proof is walked backwards from the empty label (Goldberg and Novikov, `proofs`), and
 clauses that nothing used, and literals of a clause that its derivation did not use, are left out.
@@ -31,17 +31,19 @@ clauses that nothing used, and literals of a clause that its derivation did not 
 In LRAT every line also says which clauses make it propagate, in that order, which the walk knows; a checker needs no search.
 
 For other answers: that a network entails something is a proof that the network with the opposite added is inconsistent; that
-the statements of a conflict cannot hold together is a proof for ``net.subset(conflict.indices)``. See the page on proofs.
+the statements of a conflict cannot hold together is a proof for ``conflict.to_network()``. See the page on proofs.
 
 References
 ----------
 N. Wetzler, M. Heule and W. Hunt, "DRAT-trim: efficient checking and trimming using expressive clausal proofs", SAT 2014.
-L. Cruz-Filipe, M. Heule, W. Hunt, M. Kaufmann and P. Schneider-Kamp, "Efficient certified RAT verification", CADE 2017 (LRAT).
+L. Cruz-Filipe, M. Heule, W. Hunt, M. Kaufmann and P. Schneider-Kamp, "Efficient certified RAT verification", CADE 2017
+(LRAT).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,13 +51,15 @@ import numpy as np
 from ninefold.errors import BadInput
 
 from ._lines import LINE, VARIABLE, Lines, write_lines
-from ._premises import CLOSED, N_KEYS, N_ROWS, ROW_COLUMNS, Walk, backward, forward, rehash
+from ._premises import CLOSED, N_ROWS, ROW_COLUMNS, Walk, backward, forward, rehash
 from ._replay import PAIR, TOP, arcs_of, new_replay
 from .integers import to_text
 from .proofs import check_subject
 from .propositional import to_cnf
 
 if TYPE_CHECKING:
+    import os
+
     from ._replay import Replay
     from .network import Network
     from .proofs import Proof
@@ -85,6 +89,22 @@ class ClausalProof:
     n_variables: int
     n_clauses: int
     n_lines: int
+
+    def write(self, refutation: str | os.PathLike[str], cnf: str | os.PathLike[str] | None = None) -> tuple[Path, Path]:
+        """Write both files, and return where: the formula beside the refutation, ending in .cnf, unless told otherwise.
+
+        Raises
+        ------
+        BadInput
+            If the refutation's own name ends in .cnf and no other name is given for the formula.
+        """
+        path = Path(refutation)
+        beside = path.with_suffix(".cnf") if cnf is None else Path(cnf)
+        if beside == path:
+            raise BadInput(f"{path}: this is the name of the formula; give the refutation another ending, such as .drat")
+        beside.write_bytes(self.cnf)
+        path.write_bytes(self.refutation)
+        return path, beside
 
 
 def to_drat(net: Network, proof: Proof, *, lrat: bool = False) -> ClausalProof:
@@ -116,9 +136,10 @@ def to_drat(net: Network, proof: Proof, *, lrat: bool = False) -> ClausalProof:
     ...     _ = net.add(a, b, "PP")
     >>> found = to_drat(net, check(net, proof=True).proof)
     >>> found
-    ClausalProof(n_variables=15, n_clauses=20, n_lines=5)
-    >>> print(found.refutation.decode())
-    -11 0
+    ClausalProof(n_variables=15, n_clauses=17, n_lines=2)
+    >>> print(found.refutation.decode(), end="")
+    -9 0
+    0
     """
     check_subject(net, proof)
     stated, full = net.constraints().triples(), net.calculus.universal
@@ -132,7 +153,7 @@ def to_drat(net: Network, proof: Proof, *, lrat: bool = False) -> ClausalProof:
     walk = _note(replay, walk, taken, full, work)
     cnf, lines = _number(net, replay, walk, lrat=lrat)
     parts: list[bytes] = []
-    row, out = int(walk.count[N_ROWS]) - 1, np.empty(1 << 18, dtype=np.int64)
+    row, out = int(walk.filled[N_ROWS]) - 1, np.empty(1 << 18, dtype=np.int64)
     write = write_lines.for_work(20 * row)
     while row >= 0:
         row, used, least = write(replay, walk, lines, out, row, lrat)
@@ -156,7 +177,7 @@ def _new_walk(net: Network, replay: Replay, n_clauses: int) -> Walk:
         rows=np.empty((1 << 14, ROW_COLUMNS), dtype=np.int32),
         keys=np.full(1 << 14, -1, dtype=np.int64),
         masks=np.zeros(1 << 14, dtype=np.int32),
-        count=np.zeros(2, dtype=np.int64),
+        filled=np.zeros(2, dtype=np.int64),
     )
 
 
@@ -166,7 +187,7 @@ def _note(replay: Replay, walk: Walk, taken: int, full: int, work: int) -> Walk:
     walk.need[last] = full
     walk.used[last] = True
     walk.rows[0] = CLOSED, last, -1, 0, 0, 0, 0
-    walk.count[N_ROWS] = 1
+    walk.filled[N_ROWS] = 1
     go_back = backward.for_work(work)
     while True:
         taken = go_back(replay, walk, taken, full)
@@ -180,7 +201,7 @@ def _note(replay: Replay, walk: Walk, taken: int, full: int, work: int) -> Walk:
 def _enlarge(walk: Walk) -> Walk:
     """Double the room of a walk."""
     rows = np.empty((2 * len(walk.rows), ROW_COLUMNS), dtype=np.int32)
-    used = int(walk.count[N_ROWS])
+    used = int(walk.filled[N_ROWS])
     rows[:used] = walk.rows[:used]
     keys, masks = np.full(2 * walk.keys.size, -1, dtype=np.int64), np.zeros(2 * walk.keys.size, dtype=np.int32)
     rehash.for_work(walk.keys.size)(walk.keys, walk.masks, keys, masks)

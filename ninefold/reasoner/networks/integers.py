@@ -23,12 +23,12 @@ _WIDEST = 12
 
 
 def to_text(numbers: NDArray[Any]) -> bytes:
-    """Write integers below 10^10 with spaces between them, and a line break after each 0.
+    r"""Write integers below 10^10 with spaces between them, and a line break after each 0.
 
     Examples
     --------
     >>> to_text(np.array([1, -23, 0, DELETE, 4, 0, 5, END, 6, 0]))
-    b'1 -23 0\\nd 4 0\\n5 0 6 0\\n'
+    b'1 -23 0\nd 4 0\n5 0 6 0\n'
     """
     out = np.empty(_WIDEST * len(numbers), dtype=np.uint8)
     used = write_numbers.for_work(8 * len(numbers))(np.asarray(numbers, dtype=np.int64), out)

@@ -33,6 +33,9 @@ __all__ = ["Proof", "check_subject", "digest_of", "prove"]
 
 _MAGIC = "ninefold-proof 1"
 
+_DIGITS = 18
+"""Most digits of a number in a proof, which then fits a signed word."""
+
 
 @dataclass(frozen=True, slots=True)
 class Proof:
@@ -72,14 +75,14 @@ class Proof:
         """
         lines = text.splitlines()
         head = lines[0].split() if lines else []
-        if len(head) != 5 or " ".join(head[:2]) != _MAGIC or not head[3].isdecimal():
-            raise BadInput(f"line 1: a proof begins with '{_MAGIC} CALCULUS N DIGEST'")
+        if len(head) != 5 or " ".join(head[:2]) != _MAGIC or not _is_number(head[3]):
+            raise BadInput(f"line 1: a proof begins with '{_MAGIC} CALCULUS N DIGEST', N a number below 10^{_DIGITS}")
         if len(lines) < 2 or not lines[1].startswith("pairs "):
             raise BadInput("line 2: 'pairs all' or 'pairs i-j ...' is missing")
-        words = lines[1].split()[1:]
-        pairs = None if words == ["all"] else tuple(_pair(word, int(head[3])) for word in words)
-        clauses = tuple(_clause(line, number, int(head[3])) for number, line in enumerate(lines[2:], 3))
-        return cls(head[2], int(head[3]), head[4], pairs, clauses)
+        words, n = lines[1].split()[1:], int(head[3])
+        pairs = None if words == ["all"] else tuple(_pair(word, n) for word in words)
+        clauses = tuple(_clause(line, number, n) for number, line in enumerate(lines[2:], 3))
+        return cls(head[2], n, head[4], pairs, clauses)
 
 
 def digest_of(net: Network) -> str:
@@ -90,9 +93,16 @@ def digest_of(net: Network) -> str:
 
 
 def check_subject(net: Network, proof: Proof) -> None:
-    """Raise `BadInput` unless a proof is of this network and ends in the empty clause."""
+    """Raise `BadInput` unless a proof is of this network, of its relations alone, and ends in the empty clause."""
     if proof.calculus != net.calculus.name or proof.n != net.n_entities or proof.digest != digest_of(net):
         raise BadInput("the proof is of another network: calculus, size or digest of the constraints differ")
+    universal = net.calculus.universal
+    for clause in proof.clauses:
+        for i, j, mask in clause:
+            if not 0 <= mask <= universal:
+                raise BadInput(
+                    f"the proof has the literal {i} {j} {mask}, but masks of {net.calculus.name} run from 0 to {universal}"
+                )
     if not proof.clauses or proof.clauses[-1]:
         raise BadInput("the proof does not end in the empty clause, so it proves nothing")
 
@@ -154,19 +164,32 @@ def confirm(s, clause, full):  # type: ignore[no-untyped-def]
     return 1 if append(s, clause) else 3
 
 
+def _is_number(word: str) -> bool:
+    """Tell whether a word is a whole number of a size that occurs; Python reads no more than 4,300 digits."""
+    return word.isascii() and word.isdecimal() and len(word) <= _DIGITS
+
+
 def _pair(word: str, n: int) -> tuple[int, int]:
     i, dash, j = word.partition("-")
-    if not (dash and i.isdecimal() and j.isdecimal() and int(i) != int(j) and max(int(i), int(j)) < n):
-        raise BadInput(f"line 2: {word!r} is no pair of entities below {n}")
+    if not (dash and _is_number(i) and _is_number(j) and int(i) != int(j) and max(int(i), int(j)) < n):
+        raise BadInput(f"line 2: {_short(word)} is no pair of entities below {n}")
     return int(i), int(j)
 
 
 def _clause(line: str, number: int, n: int) -> tuple[Literal, ...]:
     words = line.split()
-    if not words or words[-1] != "0" or len(words) % 3 != 1 or not all(word.isdecimal() for word in words):
+    if not words or words[-1] != "0" or len(words) % 3 != 1:
         raise BadInput(f"line {number}: a clause is triples 'i j mask', ended by 0")
+    for word in words:
+        if not _is_number(word):
+            raise BadInput(f"line {number}: {_short(word)} is no number below 10^{_DIGITS}")
     values = list(map(int, words[:-1]))
     literals = tuple(zip(values[0::3], values[1::3], values[2::3], strict=True))
     if any(i >= n or j >= n or i == j for i, j, _ in literals):
         raise BadInput(f"line {number}: a pair that is not of two entities below {n}")
     return literals
+
+
+def _short(word: str) -> str:
+    """Quote a word, its beginning only if it is long."""
+    return repr(word) if len(word) <= 40 else f"{word[:40]!r}..."

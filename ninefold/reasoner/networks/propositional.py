@@ -1,7 +1,8 @@
 """What a network says, in propositional clauses: the part of a clausal proof that has to be trusted.
 
 Entities are numbered as the network has them, and each pair i < j that is used gets one variable a base relation:
-``x(i, j, r)``, "r is the relation of i to j". What is between j and i is read off by converse. There are four kinds of clauses.
+``x(i, j, r)``, "r is the relation of i to j". What is between j and i is read off by converse. There are four kinds of
+clauses.
 
 1. For a pair: some base relation holds, ``x(i, j, 0) or x(i, j, 1) or ...``.
 2. For a pair: no two of them do, ``not x(i, j, r) or not x(i, j, s)``.
