@@ -28,8 +28,8 @@ def map_source(
     as_json: AsJson = False,
 ) -> int:
     """Build the atlas of a walk log or of a source with geometry, whose coordinates are dropped."""
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.io.formats import format_of
 
     kind = format_of(source)

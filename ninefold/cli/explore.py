@@ -30,8 +30,8 @@ def explore(
     as_json: AsJson = False,
 ) -> int:
     """Simulate a robot that explores a source depth-first, every place and every way, and write its walk log."""
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.io.sources.reading import read_source
     from ninefold.io.walks.json_lines import write_walk
 

@@ -58,8 +58,8 @@ def check(
     """Decide whether a network is consistent, and show a scenario or a minimal conflict."""
     import time
 
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
     from ninefold.reasoner.networks.consistency import check as decide
 
@@ -374,25 +374,21 @@ def _proof_files(proof: Path | None, proof_format: str) -> list[Path]:
 
 
 def _write_proof(network: "Network", proof: "Proof", proof_format: str, files: "Sequence[Path]", *, force: bool) -> None:
-    from ninefold.io.files import published
+    from ninefold._files import published
 
     if proof_format == "native":
-        contents = [proof.to_text().encode("ascii")]
-        told = f"wrote the proof {files[0]}; `prove` confirms it"
+        with published(files[0], force=force) as temporary:
+            temporary.write_text(proof.to_text(), encoding="ascii")
+        note(f"wrote the proof {files[0]}; `prove` confirms it")
     else:
         from ninefold.reasoner.networks.clausal import to_drat
 
-        found = to_drat(network, proof, lrat=proof_format == "lrat")
-        contents = [found.refutation, found.cnf]
-        told = f"wrote the proof {files[0]} and the formula {files[1]} that it refutes"
-    for file, content in zip(reversed(files), reversed(contents), strict=True):  # a proof is never there without its formula
-        with published(file, force=force) as temporary:
-            temporary.write_bytes(content)
-    note(told)
+        to_drat(network, proof, lrat=proof_format == "lrat").write(*files, force=force)
+        note(f"wrote the proof {files[0]} and the formula {files[1]} that it refutes")
 
 
 def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
-    from ninefold.io.files import published
+    from ninefold._files import published
     from ninefold.layout.realization import realize
     from ninefold.layout.witness import witness_svg
 

@@ -28,9 +28,9 @@ def draw(
     as_json: AsJson = False,
 ) -> int:
     """Draw the map with straight lines, its rotation and outer face as they are, and colour the sets you name."""
+    from ninefold._files import refuse_existing, write_text
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
-    from ninefold.io.files import published, refuse_existing
 
     if out.suffix.lower() != ".svg":
         raise BadInput(f"{out}: pictures are SVG; name a file that ends in .svg")
@@ -42,8 +42,8 @@ def draw(
         from ninefold import layout as layouts
 
         drawing = layouts.draw(plane, layout=layout)
-        with published(out, force=force) as file:
-            drawing.save(file, highlight=sets or None, title=title if title is not None else atlas.stem, theme=theme)
+        svg = drawing.to_svg(highlight=sets or None, title=title if title is not None else atlas.stem, theme=theme)
+        write_text(out, svg, force=force)
     notes(drawing.notes)
     if as_json:
         print_json({"file": str(out), "layout": drawing.layout, "notes": list(drawing.notes)})
@@ -66,8 +66,8 @@ def verify(
     as_json: AsJson = False,
 ) -> int:
     """Hold symbolic relations against shapely on a drawing whose planarity, rotation and outer face are checked too."""
+    from ninefold._files import refuse_existing, write_text
     from ninefold.io import Atlas
-    from ninefold.io.files import published, refuse_existing
 
     if out is not None:
         refuse_existing(out, force=force)
@@ -80,8 +80,7 @@ def verify(
     if report.disagreements and out is not None:
         with progress("shrinking the first disagreement"):
             svg = report.disagreements[0].minimal().to_svg()
-        with published(out, force=force) as file:
-            file.write_text(svg, encoding="utf-8")
+        write_text(out, svg, force=force)
     if as_json:
         found_problems = [*report.problems, *map(str, report.disagreements[:10])]
         print_json({"pairs": report.pairs, "agree": report.agree, "wrong": report.wrong, "problems": found_problems})

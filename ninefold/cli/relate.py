@@ -78,8 +78,8 @@ def _faces(atlas: "Atlas") -> "dict[str, Set]":
 def _table(sets: "dict[str, Set]", out: Path, *, force: bool, as_json: bool) -> None:
     import numpy as np
 
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.io.relations import write_relations
     from ninefold.reasoner import relate_all
 

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._files import published
 from ninefold.errors import BadInput, MissingExtra
 from ninefold.reasoner import Relation
-
-from .files import published
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,13 +12,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from ninefold._files import published
 from ninefold.errors import AtlasError, BadInput, NinefoldError, UnknownName
 from ninefold.mapping import Line, Point, Region
 from ninefold.mapping.robot.mapper import Mapper
 from ninefold.mapping.robot.walk import Walk, WalkHeader
 from ninefold.mapping.sets import same_map
 
-from ..files import published
 from . import _schema
 from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences

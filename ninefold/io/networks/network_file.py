@@ -29,6 +29,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ninefold._files import write_text
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
@@ -145,23 +146,18 @@ def network_to_text(net: Network, kind: str) -> str:
 
 
 def write_network(net: Network, path: str | os.PathLike[str], *, kind: str | None = None) -> None:
-    """Write a network to a file, in the format of its suffix if none is given.
+    """Write a network to a file, in the format of its suffix if none is given; a file that is there is replaced.
 
     Raises
     ------
     UnknownName
         A format or suffix that is none of `NETWORK_FORMATS`.
     BadInput
-        The file cannot be written.
+        The file cannot be written; what was there before stays.
     """
     file = Path(path)
     text = network_to_text(net, kind or file.suffix.lower().lstrip("."))
-    try:
-        file.write_text(text, encoding="utf-8", newline="")
-    except OSError as error:
-        raise BadInput(f"cannot write {file}: {error.strerror or error}") from error
-    except ValueError as error:  # a lone surrogate in a name, a null character in the path
-        raise BadInput(f"cannot write {str(file)!r}: {error}") from None
+    write_text(file, text, force=True)
 
 
 def _parse(text: str, kind: str, calculus: Calculus | str | None, file: str) -> NetworkFile:

@@ -16,21 +16,20 @@ accepted as names; keys not listed here are let pass, and those of the header ar
 from __future__ import annotations
 
 import json
-import os
-import secrets
-from contextlib import contextmanager, suppress
-from errno import EEXIST
+from contextlib import contextmanager
 from itertools import pairwise
 from math import degrees, fmod, isfinite, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from ninefold._files import published
 from ninefold.errors import BadInput, WalkError
 from ninefold.mapping.heading import TAU, Heading
 from ninefold.mapping.names import Names
 from ninefold.mapping.robot.walk import Event, HeadingUnit, Samples, Visit, Walk, WalkHeader
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Iterator
 
 __all__ = [
@@ -102,7 +101,7 @@ def read_header(path: str | os.PathLike[str]) -> WalkHeader:
 
 
 def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
-    """Write a walk log: whole or not at all, through a temporary file in the same folder.
+    """Write a walk log, whole or not at all; a file that is there is replaced.
 
     Headings are written in the unit that the walk's header names.
 
@@ -111,25 +110,15 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     WalkError
         If the file cannot be written; what was there before stays.
     """
-    target = Path(path)
     header = walk.header
-    temporary = target.parent / f".{target.name}.{secrets.token_hex(4)}.tmp"
     try:
-        if target.exists() and not target.is_file():  # a rename would put a file in the place of /dev/null
-            raise FileExistsError(EEXIST, "there is a folder, a device or a pipe")
-        with temporary.open("x", encoding="utf-8", newline="\n") as file:
+        with published(path, force=True) as temporary, temporary.open("x", encoding="utf-8", newline="\n") as file:
             file.write(_line(header_to_json(header)))
             file.writelines(_line(event_to_json(event, header)) for event in walk.events)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(target)
-    except OSError as error:
-        raise WalkError(f"the walk cannot be written: {error.strerror or error}", where=str(path)) from None
+    except BadInput as error:
+        raise WalkError(str(error)) from None
     except (TypeError, ValueError, RecursionError) as error:
         raise WalkError(f"the walk cannot be written: {error}", where=str(path)) from None
-    finally:
-        with suppress(OSError, ValueError):
-            temporary.unlink(missing_ok=True)
 
 
 def header_to_json(header: WalkHeader) -> dict[str, Any]:

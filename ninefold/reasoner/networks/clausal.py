@@ -48,6 +48,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._files import published, refuse_existing
 from ninefold.errors import BadInput
 
 from ._lines import LINE, VARIABLE, Lines, write_lines
@@ -90,21 +91,33 @@ class ClausalProof:
     n_clauses: int
     n_lines: int
 
-    def write(self, refutation: str | os.PathLike[str], cnf: str | os.PathLike[str] | None = None) -> tuple[Path, Path]:
-        """Write both files, and return where: the formula beside the refutation, ending in .cnf, unless told otherwise.
+    def write(
+        self, refutation: str | os.PathLike[str], cnf: str | os.PathLike[str] | None = None, *, force: bool = False
+    ) -> tuple[Path, Path]:
+        """Write both files, each whole or not at all, and return where they are.
+
+        Parameters
+        ----------
+        refutation, cnf
+            Paths; by default the formula goes beside the refutation, with the ending .cnf.
+        force
+            Replace what is there; otherwise a file that exists is an error.
 
         Raises
         ------
         BadInput
-            If the refutation's own name ends in .cnf and no other name is given for the formula.
+            If a file exists or cannot be written, or both would have one name.
         """
         path = Path(refutation)
-        beside = path.with_suffix(".cnf") if cnf is None else Path(cnf)
-        if beside == path:
-            raise BadInput(f"{path}: this is the name of the formula; give the refutation another ending, such as .drat")
-        beside.write_bytes(self.cnf)
-        path.write_bytes(self.refutation)
-        return path, beside
+        formula = path.with_suffix(".cnf") if cnf is None else Path(cnf)
+        if formula == path:
+            raise BadInput(f"{path}: the formula gets this name; give the proof another ending, such as .drat")
+        for file in (path, formula):
+            refuse_existing(file, force=force)
+        for file, content in ((formula, self.cnf), (path, self.refutation)):  # a proof is never there without its formula
+            with published(file, force=force) as temporary:
+                temporary.write_bytes(content)
+        return path, formula
 
 
 def to_drat(net: Network, proof: Proof, *, lrat: bool = False) -> ClausalProof:

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ninefold._kernels import kernel
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from ._replay import TOP, append, arcs_of, assume, new_replay, propagate, state_labels, undo
@@ -172,7 +173,7 @@ def _is_number(word: str) -> bool:
 def _pair(word: str, n: int) -> tuple[int, int]:
     i, dash, j = word.partition("-")
     if not (dash and _is_number(i) and _is_number(j) and int(i) != int(j) and max(int(i), int(j)) < n):
-        raise BadInput(f"line 2: {_short(word)} is no pair of entities below {n}")
+        raise BadInput(f"line 2: {quoted(word)} is no pair of entities below {n}")
     return int(i), int(j)
 
 
@@ -182,14 +183,9 @@ def _clause(line: str, number: int, n: int) -> tuple[Literal, ...]:
         raise BadInput(f"line {number}: a clause is triples 'i j mask', ended by 0")
     for word in words:
         if not _is_number(word):
-            raise BadInput(f"line {number}: {_short(word)} is no number below 10^{_DIGITS}")
+            raise BadInput(f"line {number}: {quoted(word)} is no number below 10^{_DIGITS}")
     values = list(map(int, words[:-1]))
     literals = tuple(zip(values[0::3], values[1::3], values[2::3], strict=True))
     if any(i >= n or j >= n or i == j for i, j, _ in literals):
         raise BadInput(f"line {number}: a pair that is not of two entities below {n}")
     return literals
-
-
-def _short(word: str) -> str:
-    """Quote a word, its beginning only if it is long."""
-    return repr(word) if len(word) <= 40 else f"{word[:40]!r}..."
