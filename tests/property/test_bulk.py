@@ -36,4 +36,5 @@ def test_vertices_of_many_darts(degree):
     plane = PlaneMap.from_geometry(points, spokes + rim)
     sets = random_sets(np.random.default_rng(degree), plane, 40)
     expected = np.array([[relate(x, y).code for y in sets] for x in sets], np.uint16)
+    assert np.array_equal(relate_all(SetTable.build(sets)), expected)
     assert np.array_equal(relate_all(sets), expected)
