@@ -49,7 +49,7 @@ class Lines(NamedTuple):
     """Registers."""
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=1.5, _nrt=False)
 def write_lines(s, w, x, out, row, hints):  # type: ignore[no-untyped-def]
     """Write rows from `row` down to 0, as many as there is room for.
 

@@ -92,7 +92,7 @@ N_ROWS = 0
 N_KEYS = 1
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=1.0, _nrt=False)
 def forward(s, w, arcs, masks, n_clauses):  # type: ignore[no-untyped-def]
     """State, close, and take up clauses until a label runs empty; return how many were taken up, or -1 if none does."""
     holds = state_labels(s, arcs, masks) and propagate(s)
@@ -104,7 +104,7 @@ def forward(s, w, arcs, masks, n_clauses):  # type: ignore[no-untyped-def]
     return -1 if holds else n_clauses
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=1.5, _nrt=False)
 def backward(s, w, clause, full):  # type: ignore[no-untyped-def]
     """Go back over the clauses before `clause`, in the state after them, and note what is needed.
 

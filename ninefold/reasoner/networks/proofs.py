@@ -148,13 +148,13 @@ def prove(net: Network, proof: Proof) -> None:
             return
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=1.0, _nrt=False)
 def start(s, arcs, masks):  # type: ignore[no-untyped-def]
     """State the constraints and close them; return False when a label runs empty, and then everything follows."""
     return state_labels(s, arcs, masks) and propagate(s)
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=1.0, _nrt=False)
 def confirm(s, clause, full):  # type: ignore[no-untyped-def]
     """Say of a clause whether it follows (bit 0), and take it up: whether everything follows from here on (bit 1)."""
     level = s.reg[TOP]
