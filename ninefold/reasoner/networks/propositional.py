@@ -115,6 +115,8 @@ def to_cnf(
         of_t = np.flatnonzero(triangles[:, 3] == t)
         for r1 in range(b):
             at = of_t[triangles[of_t, 4] >> r1 & 1 == 1]
+            if not at.size:
+                continue
             i, j, k = triangles[at, 0], triangles[at, 1], triangles[at, 2]
             allowed = [variable(k, j, base) for base in range(b) if int(table[r1, base]) >> t & 1]
             blocks.append(_rows(np.column_stack([-variable(i, j, t), -variable(i, k, r1), *allowed])))
