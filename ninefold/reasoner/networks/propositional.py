@@ -80,30 +80,32 @@ def to_cnf(
     keys = pairs[:, 0].astype(np.int64) * n + pairs[:, 1]
     converse = np.asarray(calculus.base_converse)
 
-    def variable(i: Any, j: Any, base: Any) -> Any:
+    def variables(i: NDArray[Any], j: NDArray[Any]) -> NDArray[np.int64]:
+        """Return the (T, b) variables of "r is the relation of i to j"."""
         pair = np.searchsorted(keys, np.minimum(i, j).astype(np.int64) * n + np.maximum(i, j))
-        return b * pair + np.where(i < j, base, converse[base]) + 1
+        found: NDArray[np.int64] = b * pair[:, None] + np.where((i < j)[:, None], np.arange(b), converse) + 1
+        return found
 
     first = np.arange(len(pairs)) * b + 1
     blocks = [_rows(first[:, None] + np.arange(b))]
     count = len(pairs)
 
-    r, s = np.triu_indices(b, 1)
+    one, two = np.triu_indices(b, 1)
     chosen = np.flatnonzero(one_only)
     unique = np.zeros(len(pairs), dtype=np.int64)
-    unique[chosen] = count + 1 + np.arange(chosen.size) * r.size
-    blocks.append(_rows(-np.stack([first[chosen, None] + r, first[chosen, None] + s], axis=2).reshape(-1, 2)))
-    count += chosen.size * r.size
+    unique[chosen] = count + 1 + np.arange(chosen.size) * one.size
+    blocks.append(_rows(-np.stack([first[chosen, None] + one, first[chosen, None] + two], axis=2).reshape(-1, 2)))
+    count += chosen.size * one.size
 
     stated = np.zeros(len(pairs) * b, dtype=np.int64)
     known = {pair: at for at, pair in enumerate(map(tuple, pairs.tolist()))}
     units: list[int] = []
     for statement in net.statements:
-        i, j = net.index(statement.a), net.index(statement.b)
-        mask = statement.mask if i < j else calculus.converse_of(statement.mask)
-        at = known.get((min(i, j), max(i, j)))
-        if at is not None:
-            units += [b * at + base for base in range(b) if not mask >> base & 1]
+        u, v = net.index(statement.a), net.index(statement.b)
+        mask = statement.mask if u < v else calculus.converse_of(statement.mask)
+        place = known.get((min(u, v), max(u, v)))
+        if place is not None:
+            units += [b * place + base for base in range(b) if not mask >> base & 1]
     number = np.array(units, dtype=np.int64)
     stated[number[::-1]] = count + np.arange(number.size, 0, -1)
     blocks.append(_rows(-(number[:, None] + 1)))
@@ -111,17 +113,16 @@ def to_cnf(
 
     composed = np.zeros((len(triangles), b), dtype=np.int64)
     table = calculus.base_composition
+    i, j, k, of_t, of_r = triangles.T
+    x_ij, x_ik, x_kj = variables(i, j), variables(i, k), variables(k, j)
     for t in range(b):
-        of_t = np.flatnonzero(triangles[:, 3] == t)
-        for r1 in range(b):
-            at = of_t[triangles[of_t, 4] >> r1 & 1 == 1]
-            if not at.size:
-                continue
-            i, j, k = triangles[at, 0], triangles[at, 1], triangles[at, 2]
-            allowed = [variable(k, j, base) for base in range(b) if int(table[r1, base]) >> t & 1]
-            blocks.append(_rows(np.column_stack([-variable(i, j, t), -variable(i, k, r1), *allowed])))
-            composed[at, r1] = count + 1 + np.arange(at.size)
-            count += at.size
+        for r in range(b):
+            at = np.flatnonzero((of_t == t) & (of_r >> r & 1 == 1))
+            if at.size:
+                allowed = [base for base in range(b) if int(table[r, base]) >> t & 1]
+                blocks.append(_rows(np.column_stack([-x_ij[at, t], -x_ik[at, r], x_kj[at][:, allowed]])))
+                composed[at, r] = count + 1 + np.arange(at.size)
+                count += at.size
 
     notes = [
         f"c {net.n_entities} entities, calculus {calculus.name}: {' '.join(calculus.bases)}",
