@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import uuid4
 
-from ninefold._wording import quoted
+from ninefold._wording import quoted, shortened
 from ninefold.errors import BadInput, NinefoldError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from os import PathLike
 
-__all__ = ["published", "refuse_existing", "write_text"]
+__all__ = ["published", "refuse_existing", "shown", "write_text"]
+
+LONGEST_PATH = 200
+"""Characters of a path that a message repeats."""
 
 
 @contextmanager
@@ -81,21 +84,26 @@ def refuse_existing(path: Path, *, force: bool) -> None:
         raise BadInput(f"{quoted(str(path))} is no file name: it holds a null character")
     try:
         _refuse(path, force=force)
-    except PermissionError as error:
-        raise BadInput(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None
+    except OSError as error:
+        raise BadInput(f"{shown(path)}: cannot be written ({error.strerror}); nothing was changed") from None
 
 
 def _refuse(path: Path, *, force: bool) -> None:
     if path.is_dir():
-        raise BadInput(f"{path}: a folder; give a file name")
+        raise BadInput(f"{shown(path)}: a folder; give a file name")
     if path.exists() and not path.is_file():  # a rename would put a file in the place of /dev/null
         raise BadInput(f"{path}: a device or a pipe, where no file can be put; give a file name")
     if path.exists() and not force:
         raise _exists(path)
     if not path.parent.is_dir():
-        raise BadInput(f"{path}: the folder {path.parent} does not exist")
+        raise BadInput(f"{shown(path)}: the folder {shown(path.parent)} does not exist")
     if not os.access(path.parent, os.W_OK):
         raise BadInput(f"{path}: the folder {path.parent} is read-only")
+
+
+def shown(path: str | PathLike[str]) -> str:
+    """Return a path as messages write it: whole, unless it is longer than any that works."""
+    return shortened(str(path), LONGEST_PATH)
 
 
 def _move_to_free_name(temporary: Path, path: Path) -> None:

@@ -5,15 +5,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, Force
 from ._output import note, notes, print_json, progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ninefold.reasoner.networks.network import Network, Statement
+    from ninefold.reasoner.networks.network import Network
     from ninefold.reasoner.networks.proofs import Proof
     from ninefold.reasoner.networks.scenario import Scenario
+    from ninefold.reasoner.networks.statement import Statement
 
 __all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 
@@ -25,14 +28,18 @@ LISTED = 1000
 """Entities up to which ``check --json`` writes the scenario out; it holds every pair."""
 
 NetPath = Annotated[
-    Path, typer.Argument(metavar="NET", help="A network: .csp, .csv or .json.", show_default=False)
+    Path, typer.Argument(metavar="NET", help="A file of declared relations: .csp, .csv or .json.", show_default=False)
 ]  # fmt: skip
 CalculusName = Annotated[
     str | None,
-    typer.Option("--calculus", help="rcc8, rcc5, point, allen or a .spec file, where NET does not say.", show_default=False),
+    typer.Option(
+        "--calculus",
+        help="rcc8, rcc5, point, allen or a .spec file; needed where NET is not in rcc8 and does not say.",
+        show_default=False,
+    ),
 ]
 Budget = Annotated[float | None, typer.Option(min=0.001, help="Seconds after which to give up.", show_default=False)]
-Seed = Annotated[int, typer.Option(min=0, help="Of the search; the same seed gives the same run.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of random choices; the same seed gives the same answer.")]
 
 
 def check(
@@ -75,7 +82,14 @@ def check(
     with progress(f"deciding {net}"):
         verdict = decide(network, budget=budget, method=method, proof=proof is not None, seed=seed)
     seconds = time.perf_counter() - begin
-    report: dict[str, Any] = {"verdict": "unknown", "seconds": round(seconds, 6), "scenario": None, "conflict": None}
+    compiling = verdict.decision.compiling
+    report: dict[str, Any] = {
+        "verdict": "unknown",
+        "seconds": round(seconds, 6),
+        "compiling": round(compiling, 6),
+        "scenario": None,
+        "conflict": None,
+    }
     text = ""
     code = SPENT
     if isinstance(verdict, Consistent):
@@ -87,10 +101,11 @@ def check(
         if draw is not None:
             _draw(verdict.scenario, draw, title=net.stem, force=force)
             report["drawing"] = str(draw)
+            text += f"\n{draw}: a drawing of {counted(network.n_entities, 'region')}, checked pair by pair"
     elif isinstance(verdict, Inconsistent):
         report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
         if not no_conflict:
-            left = None if budget is None else max(budget - seconds, 0.0)
+            left = None if budget is None else max(budget - (seconds - compiling), 0.0)
             why = _conflict(network, seed, left)
             report["conflict"] = why[0]
             text = f"{text}\n{why[1]}"
@@ -99,7 +114,7 @@ def check(
                 _write_proof(network, verdict.proof, proof_format, proof_files, force=force)
             report |= zip(("proof", "cnf"), map(str, proof_files), strict=False)
     else:
-        report["reason"] = verdict.reason
+        report["reason"], report["kind"] = verdict.reason, verdict.kind
         text = f"unknown: {verdict.reason}"
     if proof is not None and code != NO:
         note(
@@ -157,6 +172,7 @@ def infer(
 ) -> int:
     """Tell which relations are feasible between two entities."""
     from ninefold.reasoner.networks.conflicts import Conflict
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.explanation import explain
     from ninefold.reasoner.networks.inference import infer as inference
 
@@ -165,10 +181,14 @@ def infer(
         found = inference(network, a, b, seed=seed, budget=budget)
     names = network.calculus.names
     report: dict[str, Any] = {"a": found.a, "b": found.b, "relations": list(found.relations)}
-    lines = [f"{found.a}  {' '.join(found.relations) or 'nothing is possible: the network is inconsistent'}  {found.b}"]
-    if found.unknown:
-        report["unknown"] = list(names(found.unknown))
-        lines.append(f"not decided in {budget} s: {' '.join(report['unknown'])}")
+    feasible = " ".join(found.relations)
+    if found.consistent is False:
+        feasible = "nothing is possible: the network is inconsistent"
+    lines = [f"{found.a}  {feasible}  {found.b}"] if feasible else []
+    if found.kind is not None:
+        report["unknown"], report["kind"] = list(found.undecided), found.kind
+        report["reason"] = why_unknown(network.calculus, found.kind, budget)
+        lines.append(f"not decided between {found.a} and {found.b}: {' '.join(found.undecided)} ({report['reason']})")
     if why:
         report["excluded"] = {}
         for relation in names(network.calculus.universal & ~found.mask & ~found.unknown):
@@ -222,13 +242,19 @@ def repair(
     net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
 ) -> int:
     """Find the cheapest statements to drop so that the rest is consistent."""
+    from ninefold.errors import Undecided
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.repairs import repair as cheapest
 
     network = _read(net, calculus)
-    with progress(f"repairing {net}"):
-        found = cheapest(network, seed=seed, budget=budget)
+    reason = why_unknown(network.calculus, "time", budget)
+    try:
+        with progress(f"repairing {net}"):
+            found = cheapest(network, seed=seed, budget=budget)
+    except Undecided as error:
+        found, reason = None, str(error)
     if found is None:
-        _print({"drop": None, "cost": None, "optimal": False}, f"unknown: {budget} s were not enough", as_json=as_json)
+        _print({"drop": None, "cost": None, "optimal": False, "reason": reason}, f"unknown: {reason}", as_json=as_json)
         return SPENT
     if found.conflict is not None:
         report: dict[str, Any] = {"drop": None, "cost": None, "optimal": True, "conflict": _stated(network, found.conflict)}
@@ -236,7 +262,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop)} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -255,16 +281,22 @@ def scenarios(
     """List the scenarios of a network, and say how many there are."""
     from itertools import islice
 
+    from ninefold.errors import Undecided
     from ninefold.reasoner.networks.enumeration import scenarios as every
 
     network = _read(net, calculus)
-    with progress(f"listing the scenarios of {net}"):
-        found = list(islice(every(network, seed=seed), limit + 1))
+    try:
+        with progress(f"listing the scenarios of {net}"):
+            found = list(islice(every(network, seed=seed), limit + 1))
+    except Undecided as error:
+        report = {"count": 0, "exact": False, "scenarios": [], "reason": str(error)}
+        _print(report, f"unknown: {error}", as_json=as_json)
+        return SPENT
     exact, found = len(found) <= limit, found[:limit]
     if as_json:
         print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})
     else:
-        print(f"{'' if exact else 'more than '}{len(found)} scenario{'' if len(found) == 1 else 's'}")
+        print(f"{'' if exact else 'more than '}{counted(len(found), 'scenario')}")
         for number, scenario in enumerate(found, start=1):
             print(f"{number}: " + "; ".join(f"{a} {r} {b}" for a, b, r in scenario.triples()))
     return YES if found else NO
@@ -315,7 +347,7 @@ def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 
 def _counts(network: "Network") -> str:
-    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+    return f"{counted(network.n_entities, 'entity', 'entities')}, {counted(network.n_statements, 'statement')}"
 
 
 def _triples(scenario: "Scenario") -> list[list[str]]:
@@ -352,7 +384,7 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
         if found is None:
             return [], ""
         kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
-        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .methods.schnyder import schnyder
@@ -47,5 +48,5 @@ def draw(plane: PlaneMap, *, layout: str = "schnyder") -> Drawing:
     if make is None:
         near = get_close_matches(str(layout), LAYOUTS, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}? " if near else ""
-        raise BadInput(f"there is no layout named {layout!r}; {hint}the layouts are {', '.join(sorted(LAYOUTS))}")
+        raise BadInput(f"there is no layout named {quoted(layout)}; {hint}the layouts are {', '.join(sorted(LAYOUTS))}")
     return make(plane)

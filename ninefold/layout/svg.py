@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
@@ -54,7 +55,7 @@ def render(
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
-        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {theme!r}")
+        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {quoted(theme)}")
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
@@ -104,7 +105,7 @@ def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | 
         raise BadInput(f"a picture has {len(ROLES)} colours to tell apart, and {len(pairs)} sets were given; draw fewer")
     for _, x in pairs:
         if not isinstance(x, Point | Line | Region):
-            raise BadInput(f"only points, lines and regions of the map can be highlighted, not {x!r}")
+            raise BadInput(f"only points, lines and regions of the map can be highlighted, not {quoted(x)}")
         drawing.require_mine(x)
     return pairs
 

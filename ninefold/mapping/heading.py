@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ class Heading:
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.yaw):
-            raise BadInput(f"a heading is a finite angle, not {self.yaw!r}")
+            raise BadInput(f"a heading is a finite angle, not {quoted(self.yaw)}")
         object.__setattr__(self, "yaw", wrap(self.yaw))
 
     @classmethod
@@ -139,7 +140,7 @@ class Heading:
     def from_bearing(cls, degrees: float) -> Heading:
         """Make a heading from a compass bearing in degrees, clockwise from north."""
         if not math.isfinite(degrees):
-            raise BadInput(f"a bearing is a finite angle, not {degrees!r}")
+            raise BadInput(f"a bearing is a finite angle, not {quoted(degrees)}")
         return cls(math.radians(90.0 - math.fmod(degrees, 360.0)))
 
     @property

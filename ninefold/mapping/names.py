@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from numbers import Integral
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 
 __all__ = ["Names"]
@@ -45,7 +46,7 @@ class Names(Sequence[str]):
             rows = {label: row for row, label in enumerate(given)}
             if len(rows) != size:
                 twice = next(label for row, label in enumerate(given) if rows[label] != row)
-                raise BadInput(f"the {kind} name {twice!r} is given twice; names must be unique")
+                raise BadInput(f"the {kind} name {quoted(twice)} is given twice; names must be unique")
             self._labels, self._rows = given, rows
 
     @property
@@ -110,12 +111,12 @@ class Names(Sequence[str]):
 
 def _label(kind: str, label: str | int) -> str:
     if isinstance(label, bool) or not isinstance(label, str | Integral):
-        raise BadInput(f"a {kind} name is a string, not {label!r}")
+        raise BadInput(f"a {kind} name is a string, not {quoted(label)}")
     text = _text(label)
     if any(0xD800 <= ord(c) < 0xE000 for c in text):
-        raise BadInput(f"the {kind} name {label!r} cannot be written as text: it holds half a character")
+        raise BadInput(f"the {kind} name {quoted(label)} cannot be written as text: it holds half a character")
     if not text or any(ord(c) < 32 for c in text):
-        raise BadInput(f"a {kind} name is printable text, not {label!r}")
+        raise BadInput(f"a {kind} name is printable text, not {quoted(label)}")
     return text
 
 

@@ -283,7 +283,7 @@ def test_bad_json(text, message):
 
 
 def test_sizes_that_make_no_sense():
-    with pytest.raises(TooLarge, match=r"4000000001 entities for 1 statements would take 931 GiB"):
+    with pytest.raises(TooLarge, match=r"4,000,000,001 entities for 1 statement would take 931 GiB"):
         network_from_text("4000000000\n0 1 ( DC )\n.", "csp")
     with pytest.raises(TooLarge, match="an index of 20 digits"):
         network_from_text("1" * 20, "csp")

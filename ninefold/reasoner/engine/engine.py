@@ -85,6 +85,14 @@ class Engine:
         """Return the (2E,) relations of the arcs as they are now (a view)."""
         return self.state.dom
 
+    def labels(self) -> NDArray[Any]:
+        """Return the relations of all pairs of a dense frame as they are now, an (n, n) array of masks."""
+        n = self.frame.n
+        labels = np.full((n, n), self.tables.identity, dtype=np.int16)
+        tail, head = self.frame.ends()
+        labels[tail, head], labels[head, tail] = self.state.dom[::2], self.state.dom[1::2]
+        return labels
+
     def close(self, deadline: float | None = None) -> bool | None:
         """Close the stated network; return False if it is inconsistent, None past the deadline, else True.
 

@@ -4,7 +4,7 @@
 `network`          `Network`: statements over one calculus, and their intersection pair by pair
 `deciding`         the decision and what shows it; `consistency`, `conflicts` and `enumeration` call it
 `consistency`      `check`: consistent with a scenario, inconsistent, or unknown
-`scenario`         `Scenario`: one base relation a pair
+`scenario`         `Scenario`: one base relation a pair; `completion` makes it of what a decision found, without search
 `enumeration`      every scenario, and how many
 `inference`        what is feasible, what is entailed, the minimal network
 `formula`          Boolean formulas over relation atoms, and `questions`, which answers them
