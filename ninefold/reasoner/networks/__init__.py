@@ -12,6 +12,7 @@
 `repairs`          the cheapest statements to drop
 `derivation`       closure that remembers why; `refutation` adds cases; `explanation` and `words` write both down
 `proofs`           proofs of inconsistency and a checker that shares no code with the engine
+`clausal`          the same proofs as CNF with DRAT or LRAT, for other checkers; `propositional` is what to trust of that
 =================  ==============================================================================================
 
 Deciding is the work of `ninefold.reasoner.engine`. The public names are those of `ninefold.reasoner`.
