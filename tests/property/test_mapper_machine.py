@@ -46,15 +46,19 @@ class Robot:
     at: int
     events: list[Visit | Samples] = field(default_factory=list)
     dart: int = -1  # of the leg it is on
+    ends: tuple[float, float] = (0.0, 0.0)  # of that leg, looking along it and back
     edges: dict[int, str] = field(default_factory=dict)  # the ways it walked, in order, and what they are called
     seen: list[int] = field(default_factory=list)
     declared: set[int] = field(default_factory=set)
+    first: dict[int, int] = field(default_factory=dict)  # the dart along which each way was first walked
+    misses: dict[int, list[float]] = field(default_factory=dict)  # how far off each reading of a dart's heading was
 
     def fork(self) -> Robot:
         other = copy(self)
         other.mapper = self.mapper.fork()
         other.events, other.edges = self.events.copy(), self.edges.copy()
-        other.seen, other.declared = self.seen.copy(), self.declared.copy()
+        other.seen, other.declared, other.first = self.seen.copy(), self.declared.copy(), self.first.copy()
+        other.misses = {dart: found.copy() for dart, found in self.misses.items()}
         return other
 
     def take(self, event: Visit | Samples) -> None:
@@ -92,7 +96,7 @@ class Robot:
         yaws = self.yaws(dart)
         for piece in np.array_split(yaws, min(parts, len(yaws))):
             self.take(Samples(tuple(piece.tolist())))
-        self.dart = dart
+        self.dart, self.ends = dart, (yaws[0], yaws[-1] + math.pi)
 
     def arrive(self, sees_exits: bool, named: bool) -> None:
         place, edge = self.ahead, self.dart >> 1
@@ -102,6 +106,9 @@ class Robot:
         self.take(Visit(self.name(place), exits, name if named else None))
         if known is None:
             self.edges[edge] = name if named else f"e{len(self.edges)}"
+        self.first.setdefault(edge, self.dart)
+        for dart, yaw in zip((self.dart, self.dart ^ 1), self.ends, strict=True):
+            self.misses.setdefault(dart, []).append(math.remainder(yaw - self.world.heading[dart], TAU))
         if place not in self.seen:
             self.seen.append(place)
         if sees_exits:
@@ -126,6 +133,11 @@ class Robot:
         assert plane.n_vertices - plane.n_edges + plane.n_faces == 2
         assert plane == build(Walk(mapper.header, tuple(self.events)))
         same_up_to_numbering(plane, true_map(self.world, self.seen, self.edges), 5 * self.noise + 1e-9)
+        for edge, name in self.edges.items():  # headings are the mean of all passes
+            row, dart = plane.edge_names.row(name), self.first[edge]
+            for found, true in ((plane.heading[2 * row], dart), (plane.heading[2 * row + 1], dart ^ 1)):
+                mean = self.world.heading[true] + sum(self.misses[true]) / len(self.misses[true])
+                assert abs(math.remainder(found - mean, TAU)) < 1e-9
         assert mapper.n_events == len(self.events)
         assert (mapper.n_vertices, mapper.n_edges, mapper.n_faces) == (plane.n_vertices, plane.n_edges, plane.n_faces)
         assert (mapper.place, mapper.on_leg) == (self.name(self.at), self.dart >= 0)
@@ -225,7 +237,7 @@ class Exploring(RuleBasedStateMachine):
     @at_a_place
     @has_ways
     def revisit(self, times):
-        """To and fro along one way."""
+        """There and back along one way."""
         dart = self.robot.choose(0, fresh=False)
         for _ in range(2 * times):
             self.robot.leave(dart, 1)
