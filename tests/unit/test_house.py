@@ -20,6 +20,7 @@ import networkx as nx
 import pytest
 
 import ninefold
+from ninefold._kernels import Kernel
 
 ROOT = Path(ninefold.__file__).parent
 MODULES = sorted(
@@ -422,3 +423,35 @@ def test_a_module_has_what_it_lists(module: str) -> None:
     listed = list(getattr(loaded, "__all__", ()))
     assert [name for name in listed if not hasattr(loaded, name)] == []
     assert len(set(listed)) == len(listed)
+
+
+# -- kernels ---------------------------------------------------------------------------------------------------------------
+
+MOST_ARGUMENTS = 8
+
+
+@cache
+def kernels() -> dict[str, Kernel]:
+    """Return every kernel of the house, by where it is written."""
+    found = {}
+    for module in MODULES:
+        for value in vars(importlib.import_module(module)).values():
+            if isinstance(value, Kernel):
+                found[f"{value.plain.__module__}.{value.plain.__name__}"] = value
+    return found
+
+
+def test_every_kernel_is_found() -> None:
+    written = {
+        f"{module}.{node.name}"
+        for module in MODULES
+        for node in ast.walk(tree_of(module))
+        if isinstance(node, ast.FunctionDef) and any("kernel" in ast.unparse(mark) for mark in node.decorator_list)
+    }
+    assert set(kernels()) == written
+    assert len(written) > 50
+
+
+def test_kernels_with_many_arguments_take_the_state() -> None:
+    counts = {name: len(inspect.signature(kernel.plain).parameters) for name, kernel in kernels().items()}
+    assert {name: count for name, count in counts.items() if count > MOST_ARGUMENTS} == {}
