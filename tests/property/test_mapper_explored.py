@@ -63,7 +63,9 @@ def everything(mapper):
     held = {name: getattr(memory, name) for name in memory.__slots__ if name not in ("stars", "grown")}
     held["stars"] = [(star.yaws, star.darts, star.declared) for star in memory.stars]
     held["grown"] = {name: getattr(memory.grown, name) for name in memory.grown.__slots__}
-    held["self"] = {name: value for name, value in vars(mapper).items() if name not in ("_memory", "_plane", "header")}
+    own = ("_memory", "_leg", "_plane", "header")
+    held["self"] = {name: value for name, value in vars(mapper).items() if name not in own}
+    held["leg"] = {name: getattr(mapper._leg, name) for name in mapper._leg.__slots__}
     return copy.deepcopy(held)
 
 
@@ -103,7 +105,7 @@ def damaged(draw, events, places):
 def cannot_be_drawn(mapper, place):
     """Whether the leg on which a mapper is makes no plane map, judged from all its darts at once."""
     memory, grown = mapper._memory, mapper._memory.grown
-    leg = mapper._leg(place)
+    leg = mapper._leg.read()
     tail = np.array([*grown.tail, mapper._at, memory.rows[place]])
     heading = np.array([*grown.heading, leg.out, leg.back])
     after = np.empty(len(tail), int)
