@@ -63,9 +63,10 @@ def everything(mapper):
     held = {name: getattr(memory, name) for name in memory.__slots__ if name not in ("stars", "grown")}
     held["stars"] = [(star.yaws, star.darts, star.declared) for star in memory.stars]
     held["grown"] = {name: getattr(memory.grown, name) for name in memory.grown.__slots__}
-    own = ("_memory", "_leg", "_plane", "header")
-    held["self"] = {name: value for name, value in vars(mapper).items() if name not in own}
-    held["leg"] = {name: getattr(mapper._leg, name) for name in mapper._leg.__slots__}
+    held["self"] = {
+        name: value for name, value in vars(mapper).items() if name not in ("_memory", "_plane", "_leg", "header")
+    }
+    held["leg"] = [getattr(mapper._leg, name) for name in mapper._leg.__slots__]
     return copy.deepcopy(held)
 
 
