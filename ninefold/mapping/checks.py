@@ -26,6 +26,7 @@ __all__ = [
     "component_walks",
     "components_without_tethers",
     "derive",
+    "face_labels",
     "face_permutation",
     "first_darts",
     "outer_dart",
@@ -79,10 +80,9 @@ def derive(tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: N
             f"one cycle (see dart {int(bad)})"
         )
     next_face = face_permutation(next_ccw)
-    face_of, n_faces = _orbits.face_labels.for_work(size)(next_face)
+    face_of, n_faces = face_labels(next_face)
     in_tree, component, n_components = _orbits.spanning_forest.for_work(size)(tail, next_ccw, first)
     isolated = int((first < 0).sum())
-    n_faces = int(n_faces)
     # Each component on its own sphere: V - E + F = 2 per component, an isolated vertex counting one face.
     genus2 = 2 * int(n_components) - (n_vertices - size // 2 + n_faces + isolated)
     if genus2:
@@ -105,6 +105,12 @@ def face_permutation(next_ccw: NDArray[np.int32]) -> NDArray[np.int32]:
     previous = np.empty(next_ccw.size, np.int32)
     previous[next_ccw] = np.arange(next_ccw.size, dtype=np.int32)
     return np.ascontiguousarray(previous.reshape(-1, 2)[:, ::-1].reshape(-1))
+
+
+def face_labels(next_face: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:
+    """Return the face on each dart's left, (2E,) int32, numbered by lowest dart, and how many there are. O(E)."""
+    labels, count = _orbits.face_labels.for_work(next_face.size)(next_face)
+    return labels, int(count)
 
 
 def strip_tethers(next_ccw: NDArray[np.int32], tether: NDArray[np.bool_]) -> NDArray[np.int32]:
@@ -181,7 +187,7 @@ def component_walks(
     if tether.any():
         rotation = strip_tethers(next_ccw, tether)
         next_face = face_permutation(rotation)
-        face_of, n_faces = _orbits.face_labels.for_work(tail.size)(next_face)
+        face_of, n_faces = face_labels(next_face)
     corner = corner_angles(rotation, heading)
     corner[~real] = 0.0
     wrong = np.flatnonzero(np.bincount(tail, weights=corner, minlength=component.size) > 1.5 * TAU)

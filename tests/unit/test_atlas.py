@@ -195,6 +195,15 @@ def test_regions_with_holes_and_several_parts_are_stored(tmp_path):
         assert atlas.sets == dict(sorted(chosen.items()))
 
 
+def test_a_map_of_one_place_is_the_same_when_opened_again(tmp_path):
+    """It has no edge, and headings none the less: an empty array of them, not None."""
+    with Atlas.create(tmp_path / "one.atlas") as atlas:
+        atlas.append(Visit("gate"))
+        before = atlas.plane
+    with Atlas.open(tmp_path / "one.atlas") as atlas:
+        assert atlas.plane == before
+
+
 def test_names_can_be_changed_and_forgotten(triangle):
     with Atlas.open(triangle) as atlas:
         atlas.name("room", "cycle:a,b,c")

@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ninefold.mapping import _orbits
-from ninefold.mapping.checks import face_permutation, first_darts
+from ninefold.mapping.checks import face_labels, face_permutation, first_darts
 
 from ..drawing import Drawing
 from ..planarity import drawing_problems
@@ -111,8 +110,7 @@ class _Faces:
 
     def __init__(self, simple: SimpleMap) -> None:
         self.next_face = face_permutation(simple.next_ccw)
-        self.of, count = _orbits.face_labels.for_work(simple.tail.size)(self.next_face)
-        self.count = int(count)
+        self.of, self.count = face_labels(self.next_face)
         self.size = np.bincount(self.of, minlength=self.count)
         corners = self.of.astype(np.int64) * simple.n_vertices + simple.tail
         distinct = np.bincount(np.unique(corners) // simple.n_vertices, minlength=self.count)
