@@ -1,7 +1,8 @@
-"""The one table of formats: what a file is, told by what is in it, and who reads it as what.
+"""The one table of formats: what a file is, told by what is in it, and what it can be read as.
 
-A format is an entry of `FORMATS`; it names its readers by module, so the table imports none of them, and every reader may
-ask the table what a file is that it cannot take. The messages about the wrong kind of file are made here.
+A format is an entry of `FORMATS`; it knows what such a file can be read as, not who reads it, so that every reader may ask
+the table what a file is that it cannot take. Who reads is above: `ninefold.io.maps` and the modules of each family. The
+messages about the wrong kind of file are made here.
 
 ===========  =========================================================================================================
 a ``map``    `ninefold.io.read_map`: an atlas, a walk log, lines with geometry
@@ -16,21 +17,18 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from ninefold._files import shown
 from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, UnknownName
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from os import PathLike
 
-    from ninefold.mapping import PlaneMap
-
-__all__ = ["FORMATS", "Format", "Kind", "foreign", "named_format", "read_map", "recognise", "told_by", "wrong_kind"]
+__all__ = ["FORMATS", "Format", "Kind", "foreign", "named_format", "recognise", "told_by", "wrong_kind"]
 
 Kind = Literal["map", "walk", "source", "network", "atlas"]
 """What a file can be read as."""
@@ -59,8 +57,8 @@ class Format:
         Lower case, with the dot; they decide where the content does not.
     is_in
         Whether the first bytes of a file, without a byte order mark, are surely of this format.
-    readers
-        What it can be read as, and the reader: ``module:function`` below `ninefold.io`, called with the path.
+    kinds
+        What it can be read as.
     use
         What to do with such a file, for somebody who gave it to the wrong command.
     """
@@ -69,14 +67,8 @@ class Format:
     noun: str
     suffixes: tuple[str, ...]
     is_in: Callable[[bytes], bool] = field(repr=False)
-    readers: Mapping[Kind, str] = field(default_factory=dict)
+    kinds: tuple[Kind, ...] = ()
     use: str = ""
-
-    def reader(self, kind: Kind) -> Callable[..., Any]:
-        """Return the function that reads such a file as a `kind`, loaded now."""
-        module, _, function = self.readers[kind].partition(":")
-        found: Callable[..., Any] = getattr(import_module(f"ninefold.io.{module}"), function)
-        return found
 
 
 def _is_atlas(head: bytes) -> bool:
@@ -129,25 +121,25 @@ FORMATS = (
         "an atlas",
         (".atlas",),
         _is_atlas,
-        {"atlas": "atlas.atlas:Atlas", "map": "atlas.atlas:read_plane"},
+        ("atlas", "map"),
         "`ninefold info FILE` shows what is in it (in Python: Atlas.open)",
     ),
-    Format("sqlite", "an SQLite database of something else", (), _is_sqlite, {"map": "atlas.atlas:read_plane"}),
+    Format("sqlite", "an SQLite database of something else", (), _is_sqlite, ("map",)),
     Format(
         "walk",
         "a walk log",
         (".jsonl",),
         _is_walk,
-        {"walk": "walks.json_lines:read_walk", "map": "walks.mapped:map_of_walk"},
+        ("walk", "map"),
         _TO_ATLAS,
     ),
-    Format("network-json", "a relation network", (), _is_network_object, {"network": "networks.json_file:read"}, _ASK),
+    Format("network-json", "a relation network", (), _is_network_object, ("network",), _ASK),
     Format(
         "geojson",
         "lines in GeoJSON",
         (".geojson", ".json"),
         _is_geojson,
-        {"source": "sources.reading:read_source", "map": "sources.reading:map_of_source"},
+        ("source", "map"),
         _TO_ATLAS,
     ),
     Format(
@@ -156,8 +148,8 @@ FORMATS = (
         (),
         lambda head: head.startswith(b"x,y,name,de9im,rcc8"),
     ),
-    Format("network-csv", "a relation network", (".csv",), _is_network_table, {"network": "networks.csv_file:read"}, _ASK),
-    Format("network-csp", "a relation network", (".csp",), _is_csp, {"network": "networks.csp:read"}, _ASK),
+    Format("network-csv", "a relation network", (".csv",), _is_network_table, ("network",), _ASK),
+    Format("network-csp", "a relation network", (".csp",), _is_csp, ("network",), _ASK),
     Format(
         "proof",
         "a proof of inconsistency",
@@ -216,9 +208,9 @@ def recognise(path: str | PathLike[str], kind: Kind = "map") -> Format:
     if found is None and head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
         found = named_format("geojson")
     if found is None:
-        fit = [f"{known.noun} ({known.suffixes[0]})" for known in FORMATS if kind in known.readers and known.suffixes]
+        fit = [f"{known.noun} ({known.suffixes[0]})" for known in FORMATS if kind in known.kinds and known.suffixes]
         raise BadInput(f"{file}: neither {', '.join(fit[:-1])} nor {fit[-1]}" if fit[1:] else f"{file}: not {fit[0]}")
-    if kind not in found.readers:
+    if kind not in found.kinds:
         error = AtlasError if named is not None and named.name == "atlas" else BadInput
         raise error(wrong_kind(path, found, kind))
     return found
@@ -227,7 +219,7 @@ def recognise(path: str | PathLike[str], kind: Kind = "map") -> Format:
 def foreign(head: bytes, kind: Kind) -> Format | None:
     """Return the format of the first bytes of a file if they are surely of one that cannot be read as `kind`."""
     found = told_by(head)
-    return found if found is not None and kind not in found.readers else None
+    return found if found is not None and kind not in found.kinds else None
 
 
 def wrong_kind(path: str | PathLike[str], found: Format, wanted: Kind) -> str:
@@ -248,28 +240,3 @@ def _head(file: Path) -> bytes:
         if isinstance(error, BadInput):
             raise
         raise BadInput(f"{quoted(str(file))} is no file name: it holds a null character") from None
-
-
-def read_map(path: str | PathLike[str], *, tolerance: float | None = None) -> PlaneMap:
-    """Read a plane map from an atlas, a walk log or a source with geometry; the format is recognised.
-
-    Parameters
-    ----------
-    tolerance
-        Radians, for a walk, instead of its header's.
-
-    Raises
-    ------
-    NinefoldError
-        For a file that cannot be read, or makes no plane map; the message says where and why.
-
-    Examples
-    --------
-    >>> from ninefold.io import read_map
-    >>> read_map("sample:figure8")
-    PlaneMap(9 vertices, 13 edges, 6 faces)
-    """
-    found = recognise(path)
-    options = {} if tolerance is None or found.name != "walk" else {"tolerance": tolerance}
-    plane: PlaneMap = found.reader("map")(path, **options)
-    return plane
