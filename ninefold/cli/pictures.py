@@ -10,14 +10,14 @@ from ._output import notes, print_json, progress
 
 __all__ = ["draw", "verify"]
 
-LayoutName = Annotated[str, typer.Option("--layout", metavar="schnyder|tutte", help="How the map is laid out.")]
+LayoutName = Annotated[str, typer.Option("--layout", metavar="auto|tutte|schnyder", help="How the map is laid out.")]
 
 
 def draw(
     atlas: AtlasPath,
     *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE.svg", help="The picture.", show_default=False)],
-    layout: LayoutName = "tutte",
+    layout: LayoutName = "auto",
     highlight: Annotated[
         list[str] | None,
         typer.Option("--highlight", metavar="SET", help="Colour a stored name or a set as for `name`; up to 7 times."),

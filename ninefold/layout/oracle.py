@@ -151,7 +151,7 @@ def verify(
         Sets, of which all ordered pairs are compared; or pairs of sets. Left out, `n_pairs` pairs of points, lines and
         regions are sampled with `seed`.
     layout
-        "schnyder" or "tutte".
+        A layout by name, as for `draw`. The Schnyder drawing is exact at any size, so it is the one checked by default.
     drawing
         A drawing to check instead of a fresh one.
 

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted
 from ninefold.errors import BadInput, NotPlane
+from ninefold.immutable import Immutable, freeze
 
 from . import checks, select
 from .containment import ContainmentIndex
@@ -31,10 +33,14 @@ if TYPE_CHECKING:
 
 __all__ = ["PlaneMap"]
 
+_PICTURE_WORDS = ("draw", "plot", "show", "save", "to_svg", "svg", "points", "coordinates")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlaneMap:
+class PlaneMap(Immutable):
     """A plane map: rotation system plus outer face. Immutable; make one with a ``from_*`` constructor or a `Mapper`.
+
+    A map has no coordinates; ``ninefold.draw(plane)`` finds some and makes a picture, `ninefold.layout.draw` says more.
 
     Attributes
     ----------
@@ -121,7 +127,9 @@ class PlaneMap:
         tails = _ints("tail", tail)
         after = _ints("next_ccw", next_ccw)
         if tails.size % 2 or after.size != tails.size:
-            raise BadInput(f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge")
+            raise BadInput(
+                f"tail has {counted(tails.size, 'entry', 'entries')} and next_ccw {after.size}; both need two for each edge"
+            )
         n_edges = tails.size // 2
         total = int(tails.max()) + 1 if tails.size else 0
         count = total if n_vertices is None else _whole("n_vertices", n_vertices)
@@ -133,14 +141,17 @@ class PlaneMap:
         if tails.size and (int(after.min()) < 0 or int(after.max()) >= tails.size):
             raise BadInput(f"next_ccw must hold darts from 0 to {tails.size - 1}")
         if count > max(1, 2 * n_edges):  # refused before anything is as large as such a number
-            raise BadInput(f"{n_edges} edges cannot join {count} vertices; tie separate components with tethers")
+            raise BadInput(f"{counted(n_edges, 'edge')} cannot join {count} vertices; tie separate components with tethers")
         virtual = np.zeros(n_edges, np.bool_) if tether is None else _array("tether", tether, np.bool_)
         if virtual.shape != (n_edges,):
             raise BadInput(f"tether has shape {virtual.shape}, not ({n_edges},)")
         v_names = vertex_names if isinstance(vertex_names, Names) else Names("vertex", count, vertex_names)
         e_names = edge_names if isinstance(edge_names, Names) else Names("edge", n_edges, edge_names)
         if (v_names.size, e_names.size) != (count, n_edges):
-            raise BadInput(f"{v_names.size} vertex and {e_names.size} edge names for {count} and {n_edges}")
+            raise BadInput(
+                f"{counted(v_names.size, 'vertex name')} and {counted(e_names.size, 'edge name')} for "
+                f"{counted(count, 'vertex', 'vertices')} and {counted(n_edges, 'edge')}; give one name each"
+            )
         angles = _angles(heading, turn, virtual)
         outer = None if outer is None else _whole("outer", outer)
         return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
@@ -172,10 +183,8 @@ class PlaneMap:
             components = checks.components_without_tethers(tail, next_ccw, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
-        found = (derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
-        for array in (tail, next_ccw, tether, heading, turn, *found):
-            if array is not None:
-                array.setflags(write=False)
+        freeze(tail, next_ccw, tether, heading, turn)
+        freeze(derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
         return cls(tail, next_ccw, outer_dart, tether, heading, turn, vertex_names, edge_names, derived)
 
     @classmethod
@@ -404,7 +413,9 @@ class PlaneMap:
 
     @cached_property
     def _face_first(self) -> NDArray[np.int64]:
-        return checks.first_darts(self.face_of, self.n_faces)
+        first = checks.first_darts(self.face_of, self.n_faces)
+        freeze(first)
+        return first
 
     # -- sets ----------------------------------------------------------------------------------------------------------
 
@@ -506,10 +517,20 @@ class PlaneMap:
             parts.append(f"{self.n_components} components")
         return f"PlaneMap({', '.join(parts)})"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the same text, and how to get a picture."""
+        return f"<code>{self!r}</code><br><small>to see it: <code>ninefold.draw(plane)</code></small>"
+
+    if not TYPE_CHECKING:  # for people who look for a picture here; a type checker need not know
+
+        def __getattr__(self, name: str) -> Any:
+            hint = "; ninefold.draw(plane) makes a picture of a map" if name in _PICTURE_WORDS else ""
+            raise AttributeError(f"a PlaneMap has no attribute {name!r}{hint}", name=name, obj=self)
+
 
 def _counts(tails: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
     counts = np.bincount(tails, minlength=n_vertices).astype(np.int32)
-    counts.setflags(write=False)
+    freeze(counts)
     return counts
 
 

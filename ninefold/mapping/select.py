@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import AmbiguousDart, BadInput, EmptySet, NotACycle, UnknownName
 
 from .sets import Line, Point, Region
@@ -33,7 +35,7 @@ def edge(plane: PlaneMap, names: Sequence[str | int]) -> Line:
     if len(names) == 2:
         dart = _dart_between(plane, plane.vertex_names.row(names[0]), plane.vertex_names.row(names[1]))
         return Line(plane, (dart >> 1,))
-    raise BadInput(f"an edge is named by its own name or by its two ends, not by {len(names)} names")
+    raise BadInput(f"an edge is named by its own name or by its two ends, not by {counted(len(names), 'name')}")
 
 
 def line(plane: PlaneMap, edges: Iterable[str | int]) -> Line:
@@ -86,10 +88,11 @@ def cycle(plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iter
 
 def region(plane: PlaneMap, faces: Iterable[int]) -> Region:
     """Return the union of bounded faces."""
-    chosen = list(faces)
-    if not all(isinstance(face, int | np.integer) and not isinstance(face, bool) for face in chosen):
-        raise BadInput(f"faces are given by number, not {chosen!r}")
-    return Region.from_faces(plane, chosen)
+    if isinstance(faces, Point | Line | Region):
+        raise BadInput(f"{faces!r} is a set already; plane.region takes the numbers of faces, and X | Y joins regions")
+    if isinstance(faces, Integral):
+        raise BadInput(f"plane.region takes several face numbers, as in plane.region([{faces}]); plane.face({faces}) is one")
+    return Region.from_faces(plane, faces)
 
 
 def parse(plane: PlaneMap, text: str) -> Set:
@@ -151,7 +154,11 @@ def _numbers(parts: list[str]) -> list[int]:
 
 def _list(names: Iterable[str | int], what: str) -> list[str | int]:
     if isinstance(names, str):
-        raise BadInput(f"a {what} takes a list of names, not the string {names!r}; plane.parse reads text")
+        raise BadInput(f"a {what} takes a list of names, not the string {quoted(names)}; plane.parse reads text")
+    if isinstance(names, Point | Line | Region):
+        raise BadInput(f"a {what} takes a list of names, and {names!r} is a set already")
+    if not hasattr(names, "__iter__"):
+        raise BadInput(f"a {what} takes a list of names, not {quoted(names)}")
     return list(names)
 
 

@@ -100,7 +100,7 @@ def test_an_equal_map_made_twice_is_the_same_map():
 def test_unknown_layouts_sizes_and_arrays_are_refused(tmp_path):
     with pytest.raises(BadInput, match="did you mean 'tutte'"):
         draw(SQUARE, layout="tute")
-    with pytest.raises(BadInput, match="the layouts are schnyder, tutte"):
+    with pytest.raises(BadInput, match="the layouts are auto, schnyder, tutte"):
         draw(SQUARE, layout="spring")
     with pytest.raises(TooLarge, match="357913943"):
         check_size(400_000_000)

@@ -30,6 +30,7 @@ import numpy as np
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
+from ninefold.immutable import Immutable, freeze
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -79,7 +80,7 @@ class Statement:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Constraints:
+class Constraints(Immutable):
     """The statements of a network, intersected pair by pair.
 
     Attributes
@@ -100,6 +101,9 @@ class Constraints:
     mask: NDArray[Any]
     starts: NDArray[np.int64] = field(repr=False)
     statement: NDArray[np.int64] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        freeze(self.i, self.j, self.mask, self.starts, self.statement)
 
     def __len__(self) -> int:
         return self.i.size
