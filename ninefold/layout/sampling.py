@@ -20,6 +20,9 @@ __all__ = ["random_sets", "sample_pairs"]
 
 GROUP = 16
 
+MOST_SPOKES = 64
+"""Darts of one vertex that sets are drawn from: GEOS takes a time quadratic in the parts of a line that meet in a point."""
+
 
 def sample_pairs(plane: PlaneMap, count: int, rng: np.random.Generator) -> tuple[list[Set], NDArray[np.int64]]:
     """Sample sets, and pairs of them: four of five within a group of neighbours, the rest across the map.
@@ -61,7 +64,7 @@ def random_sets(plane: PlaneMap, count: int, rng: np.random.Generator) -> list[S
     """
     centre = int(rng.integers(plane.n_vertices))
     reach = int(rng.choice([6, 20, 60]))
-    darts = _around(plane, centre, reach)
+    darts = _around(plane, centre, reach, rng)
     edges = sorted({d >> 1 for d in darts if not plane.tether[d >> 1]})
     faces = sorted({int(plane.face_of[d]) for d in darts} - {plane.outer_face})
     vertices = sorted({centre, *(int(plane.tail[d]) for d in darts)})
@@ -87,14 +90,18 @@ def _one_set(plane: PlaneMap, vertices: list[int], edges: list[int], faces: list
     return Region.from_faces(plane, _blob(plane, int(rng.choice(faces)), rng))
 
 
-def _around(plane: PlaneMap, centre: int, reach: int) -> list[int]:
-    """The darts at the nearest `reach` vertices, breadth first, tethers included."""
+def _around(plane: PlaneMap, centre: int, reach: int, rng: np.random.Generator) -> list[int]:
+    """The darts at the nearest `reach` vertices, breadth first, tethers included; of a vertex with very many a run of them."""
     seen, queue = {centre}, [centre]
     darts: list[int] = []
     for v in queue:
         if len(queue) > 4 * reach or len(darts) > 12 * reach:
             break
-        for d in plane.darts_at(v):
+        spokes = plane.darts_at(v)
+        if len(spokes) > MOST_SPOKES:
+            first = int(rng.integers(len(spokes)))
+            spokes = (spokes + spokes)[first : first + MOST_SPOKES]
+        for d in spokes:
             darts.append(d)
             w = int(plane.tail[d ^ 1])
             if w not in seen and len(seen) < reach:
