@@ -23,7 +23,7 @@ NOTHING, PIECES, ON_PIECE = 0, 1, 2
 """What `sweep` found: no meeting, two pieces that meet off their ends, a node on a piece."""
 
 LEFT, RIGHT, UP, NEXT, PREVIOUS, PRIORITY = range(6)
-"""Rows of the table that holds the treap. Its last column is a sentinel: above the root, before the first, after the last."""
+"""Rows of the table that holds the treap. The last column is a sentinel: over the root, before the first, after the last."""
 
 
 @kernel

@@ -91,7 +91,7 @@ def _one_set(plane: PlaneMap, vertices: list[int], edges: list[int], faces: list
 
 
 def _around(plane: PlaneMap, centre: int, reach: int, rng: np.random.Generator) -> list[int]:
-    """The darts at the nearest `reach` vertices, breadth first, tethers included; of a vertex with very many a run of them."""
+    """The darts at the nearest `reach` vertices, breadth first, with tethers; of a vertex with very many a run of them."""
     seen, queue = {centre}, [centre]
     darts: list[int] = []
     for v in queue:

@@ -19,7 +19,7 @@ from ninefold.immutable import Immutable, freeze
 
 from . import checks, select
 from .containment import ContainmentIndex
-from .heading import TAU, Heading
+from .heading import LARGEST_ANGLE, TAU, Heading
 from .names import Names
 from .rotation import read_rotation
 from .sets import Point
@@ -266,7 +266,8 @@ class PlaneMap(Immutable):
         Raises
         ------
         BadInput
-            For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+            For coordinates that are not finite or beyond 1e150, edges without length, two edges that leave a vertex in one
+            direction.
         NotPlane
             Where Euler's formula or the turning numbers show that edges cross. Crossings that leave both whole, such as a
             dead end across a street, are not searched for.
@@ -582,8 +583,9 @@ def _angles(
         )
     head[np.repeat(tether, 2)] = np.nan
     turns[tether] = np.nan
-    if not (np.isfinite(head[~np.repeat(tether, 2)]).all() and np.isfinite(turns[~tether]).all()):
-        raise BadInput("heading and turn must be finite radians")
+    given = np.concatenate([head[~np.repeat(tether, 2)], turns[~tether]])
+    if not (np.abs(given) <= LARGEST_ANGLE).all():
+        raise BadInput(f"heading and turn must be finite radians, at most {LARGEST_ANGLE:.0f} either way")
     head -= TAU * np.round(head / TAU)
     return head, turns
 
