@@ -21,6 +21,7 @@ from . import checks, select
 from .containment import ContainmentIndex
 from .heading import LARGEST_ANGLE, TAU, Heading
 from .names import Names
+from .numbering import Dart, Face, Vertex
 from .rotation import read_rotation
 from .sets import Point
 
@@ -73,7 +74,7 @@ class PlaneMap(Immutable):
 
     tail: NDArray[np.int32]
     next_ccw: NDArray[np.int32]
-    outer: int
+    outer: Dart
     tether: NDArray[np.bool_]
     heading: NDArray[np.float64] | None
     turn: NDArray[np.float64] | None
@@ -185,7 +186,7 @@ class PlaneMap(Immutable):
         heading, turn = angles if angles is not None else (None, None)
         freeze(tail, next_ccw, tether, heading, turn)
         freeze(derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
-        return cls(tail, next_ccw, outer_dart, tether, heading, turn, vertex_names, edge_names, derived)
+        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, vertex_names, edge_names, derived)
 
     @classmethod
     def from_rotation(
@@ -368,9 +369,9 @@ class PlaneMap(Immutable):
         return self._derived.first
 
     @property
-    def outer_face(self) -> int:
+    def outer_face(self) -> Face:
         """The number of the outer face."""
-        return int(self.face_of[self.outer]) if self.outer >= 0 else 0
+        return Face(int(self.face_of[self.outer])) if self.outer >= 0 else Face(0)
 
     @cached_property
     def spokes(self) -> NDArray[np.int32]:
@@ -388,27 +389,27 @@ class PlaneMap(Immutable):
         """The containment index, built at first use in O(E)."""
         return ContainmentIndex.build(self.next_face, self.face_of, self._derived.in_tree, self.outer, self.n_faces)
 
-    def darts_at(self, vertex: int) -> list[int]:
+    def darts_at(self, vertex: Vertex) -> list[Dart]:
         """Return the darts that leave a vertex (by number), counter-clockwise from its lowest, tethers included."""
         start = int(self.first_dart[vertex])
         if start < 0:
             return []
-        darts = [start]
+        darts = [Dart(start)]
         d = int(self.next_ccw[start])
         while d != start:
-            darts.append(d)
+            darts.append(Dart(d))
             d = int(self.next_ccw[d])
         return darts
 
-    def face_darts(self, face: int) -> list[int]:
+    def face_darts(self, face: Face) -> list[Dart]:
         """Return the darts of the walk around a face, the lowest first; tethers included."""
         if self.outer < 0:
             return []
         start = int(self._face_first[face])
-        darts = [start]
+        darts = [Dart(start)]
         d = int(self.next_face[start])
         while d != start:
-            darts.append(d)
+            darts.append(Dart(d))
             d = int(self.next_face[d])
         return darts
 
@@ -422,7 +423,7 @@ class PlaneMap(Immutable):
 
     def vertex(self, name: str | int) -> Point:
         """Return the vertex of that name as a `Point`."""
-        return Point(self, self.vertex_names.row(name))
+        return Point(self, Vertex(self.vertex_names.row(name)))
 
     def edge(self, *names: str | int) -> Line:
         """Return one edge: ``edge("e7")`` or ``edge("@e7")`` by its own name, ``edge("v1", "v3")`` by its ends."""
@@ -452,7 +453,7 @@ class PlaneMap(Immutable):
         """Return the set that a text names, such as ``cycle:v0,v1,v8,v7`` or ``edge:@e7``; see `select.parse`."""
         return select.parse(self, text)
 
-    def heading_of(self, dart: int) -> Heading:
+    def heading_of(self, dart: Dart) -> Heading:
         """Return the heading on leaving along a dart."""
         if self.heading is None or np.isnan(self.heading[dart]):
             raise BadInput(f"dart {dart} has no heading: the map was made without, or it is a tether")

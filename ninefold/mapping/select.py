@@ -11,6 +11,7 @@ import numpy as np
 from ninefold._wording import counted, quoted
 from ninefold.errors import AmbiguousDart, BadInput, EmptySet, NotACycle, UnknownName
 
+from .numbering import Dart, Edge, Vertex
 from .sets import Line, Point, Region
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def edge(plane: PlaneMap, names: Sequence[str | int]) -> Line:
         return Line(plane, (_edge_row(plane, names[0]),))
     if len(names) == 2:
         dart = _dart_between(plane, plane.vertex_names.row(names[0]), plane.vertex_names.row(names[1]))
-        return Line(plane, (dart >> 1,))
+        return Line(plane, (Edge(dart >> 1),))
     raise BadInput(f"an edge is named by its own name or by its two ends, not by {counted(len(names), 'name')}")
 
 
@@ -58,7 +59,7 @@ def path(plane: PlaneMap, steps: Iterable[str | int]) -> Line:
     if not darts:
         raise EmptySet("a path needs at least one edge; for a place alone use plane.vertex")
     _no_edge_twice(plane, darts, "path")
-    return Line(plane, tuple(sorted(d >> 1 for d in darts)), tuple(darts))
+    return Line(plane, tuple(Edge(d >> 1) for d in darts), tuple(darts))
 
 
 def cycle(plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iterable[str | int] | None = None) -> Region:
@@ -76,7 +77,7 @@ def cycle(plane: PlaneMap, steps: Iterable[str | int] | None = None, edges: Iter
     else:
         darts = _walk(plane, [] if steps is None else _list(steps, "cycle"), close=True)
         _no_edge_twice(plane, darts, "cycle")
-        rows = [d >> 1 for d in darts]
+        rows = [Edge(d >> 1) for d in darts]
     if not rows:
         raise EmptySet("a cycle needs at least one edge")
     if len(set(rows)) != len(rows):
@@ -162,21 +163,22 @@ def _list(names: Iterable[str | int], what: str) -> list[str | int]:
     return list(names)
 
 
-def _edge_row(plane: PlaneMap, name: str | int) -> int:
+def _edge_row(plane: PlaneMap, name: str | int) -> Edge:
     text = str(name)
     row = plane.edge_names.row(text[1:] if text.startswith("@") else text)
     if plane.tether[row]:
         raise UnknownName("edge", text)
-    return row
+    return Edge(row)
 
 
-def darts_between(plane: PlaneMap, u: int, v: int) -> list[int]:
+def darts_between(plane: PlaneMap, u: int, v: int) -> list[Dart]:
     """Return the darts from vertex u to vertex v (numbers), tethers left out; O(smaller degree)."""
-    darts = plane.darts_at(u) if plane.spokes[u] <= plane.spokes[v] else [d ^ 1 for d in plane.darts_at(v)]
+    at_u = plane.spokes[u] <= plane.spokes[v]
+    darts = plane.darts_at(Vertex(u)) if at_u else [Dart(d ^ 1) for d in plane.darts_at(Vertex(v))]
     return [d for d in darts if plane.tail[d] == u and plane.tail[d ^ 1] == v and not plane.tether[d >> 1]]
 
 
-def _dart_between(plane: PlaneMap, u: int, v: int) -> int:
+def _dart_between(plane: PlaneMap, u: int, v: int) -> Dart:
     found = darts_between(plane, u, v)
     edges = sorted({d >> 1 for d in found})
     if not edges:
@@ -189,7 +191,7 @@ def _dart_between(plane: PlaneMap, u: int, v: int) -> int:
     return min(found)
 
 
-def _walk(plane: PlaneMap, steps: list[str | int], *, close: bool) -> list[int]:
+def _walk(plane: PlaneMap, steps: list[str | int], *, close: bool) -> list[Dart]:
     """Turn steps into darts. After an ``@edge`` its own end may be named again; `close` goes back to the start."""
     if not steps:
         return []
@@ -204,13 +206,13 @@ def _walk(plane: PlaneMap, steps: list[str | int], *, close: bool) -> list[int]:
         raise
 
 
-def _walk_from(plane: PlaneMap, start: int, steps: list[str | int], edges: list[int], *, close: bool) -> list[int]:
+def _walk_from(plane: PlaneMap, start: int, steps: list[str | int], edges: list[int], *, close: bool) -> list[Dart]:
     tail = plane.tail
-    at, darts = start, list[int]()
+    at, darts = start, list[Dart]()
     after_edge = True  # the first vertex of the list is where the walk stands
     for step, e in zip(steps, edges, strict=True):
         if e >= 0:
-            dart = 2 * e if tail[2 * e] == at else 2 * e + 1
+            dart = Dart(2 * e if tail[2 * e] == at else 2 * e + 1)
             if tail[dart] != at:
                 raise NotACycle(f"edge {step!r} does not leave {plane.vertex_names[at]!r}, where the way has come to")
         else:
@@ -238,11 +240,11 @@ def _starts(plane: PlaneMap, steps: list[str | int], edges: list[int]) -> list[i
         ends = {int(plane.tail[2 * edges[1]]), int(plane.tail[2 * edges[1] + 1])}
     else:
         to = plane.vertex_names.row(steps[1])
-        ends = {to} if to in (u, v) else {int(plane.tail[d ^ 1]) for d in plane.darts_at(to)}
+        ends = {to} if to in (u, v) else {int(plane.tail[d ^ 1]) for d in plane.darts_at(Vertex(to))}
     return [at for at, far in ((u, v), (v, u)) if far in ends] or [v]
 
 
-def _no_edge_twice(plane: PlaneMap, darts: list[int], what: str) -> None:
+def _no_edge_twice(plane: PlaneMap, darts: Sequence[int], what: str) -> None:
     seen: set[int] = set()
     for d in darts:
         if d >> 1 in seen:
@@ -250,7 +252,7 @@ def _no_edge_twice(plane: PlaneMap, darts: list[int], what: str) -> None:
         seen.add(d >> 1)
 
 
-def _check_simple(plane: PlaneMap, rows: list[int]) -> None:
+def _check_simple(plane: PlaneMap, rows: Sequence[int]) -> None:
     """Check that the edges form one simple cycle: degree 2 at every vertex, and connected."""
     incident: dict[int, list[int]] = {}
     for e in rows:

@@ -23,6 +23,7 @@ from ninefold.errors import BadInput, DifferentMaps, EmptySet
 from ninefold.immutable import Immutable, freeze, frozen_copy
 
 from .containment import ends_of_numbers, numbers_of_ends
+from .numbering import Dart, Edge, Face, Vertex
 from .split import faces_beside
 from .trails import trails
 
@@ -54,7 +55,7 @@ class Point(Immutable):
     """
 
     plane: PlaneMap = field(repr=False)
-    index: int
+    index: Vertex
 
     dimension = 0
 
@@ -105,8 +106,8 @@ class Line(Immutable):
     """
 
     plane: PlaneMap = field(repr=False)
-    edges: tuple[int, ...]
-    darts: tuple[int, ...] | None = None
+    edges: tuple[Edge, ...]
+    darts: tuple[Dart, ...] | None = None
 
     dimension = 1
 
@@ -131,37 +132,37 @@ class Line(Immutable):
             object.__setattr__(self, "darts", darts)
 
     @cached_property
-    def star(self) -> dict[int, int]:
+    def star(self) -> dict[Vertex, int]:
         """Vertex to the mask of its darts (by rank) that lie in the line, for every vertex of the line."""
         tail, rank = self.plane.tail, self.plane.rank
-        star: dict[int, int] = {}
+        star: dict[Vertex, int] = {}
         darts = np.array(self.edges, np.int64)[:, None] * 2 + np.array([0, 1])
         for v, r in zip(tail[darts].ravel().tolist(), rank[darts].ravel().tolist(), strict=True):
             star[v] = star.get(v, 0) | 1 << r
         return star
 
     @cached_property
-    def boundary(self) -> frozenset[int]:
+    def boundary(self) -> frozenset[Vertex]:
         """The vertices of odd degree in the line."""
         return frozenset(v for v, darts in self.star.items() if darts.bit_count() % 2)
 
     @property
-    def vertices(self) -> frozenset[int]:
+    def vertices(self) -> frozenset[Vertex]:
         """Every vertex of the line, boundary or not."""
         return frozenset(self.star)
 
     @cached_property
-    def edge_set(self) -> frozenset[int]:
+    def edge_set(self) -> frozenset[Edge]:
         """The edges as a set."""
         return frozenset(self.edges)
 
     @cached_property
-    def pieces(self) -> tuple[frozenset[int], ...]:
+    def pieces(self) -> tuple[frozenset[Vertex], ...]:
         """The vertex sets of the connected pieces, by lowest vertex."""
         return _pieces(self.plane, [2 * e for e in self.edges])
 
     @cached_property
-    def trails(self) -> tuple[tuple[int, ...], ...]:
+    def trails(self) -> tuple[tuple[Dart, ...], ...]:
         """The fewest walks, as darts, that cover the line; see `ninefold.mapping.trails`."""
         return trails(self)
 
@@ -181,7 +182,7 @@ class Line(Immutable):
         if not isinstance(other, Line):
             return NotImplemented
         same_map(self, other)
-        return Line(self.plane, tuple(sorted(self.edge_set | other.edge_set)))
+        return Line(self.plane, tuple(self.edge_set | other.edge_set))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Line):
@@ -276,7 +277,7 @@ class Region(Immutable):
         edges = np.flatnonzero(left[0::2] != left[1::2])
         return cls.from_ends(plane, ends, edges)
 
-    def has_face(self, face: int) -> bool:
+    def has_face(self, face: Face) -> bool:
         """Say whether a face is in the region: one binary search."""
         return bool(bisect_right(self._ends, int(self.plane.containment.preorder[face])) & 1)
 
@@ -285,7 +286,7 @@ class Region(Immutable):
         return self.ends.tolist()  # type: ignore[no-any-return]
 
     @cached_property
-    def faces(self) -> tuple[int, ...]:
+    def faces(self) -> tuple[Face, ...]:
         """The faces inside, ascending. O(area)."""
         return tuple(sorted(self.plane.containment.face_at[numbers_of_ends(self.ends)].tolist()))
 
@@ -295,22 +296,22 @@ class Region(Immutable):
         return int((self.ends[1::2] - self.ends[0::2]).sum())
 
     @cached_property
-    def edge_set(self) -> frozenset[int]:
+    def edge_set(self) -> frozenset[Edge]:
         """The boundary edges."""
         return frozenset((self.darts >> 1).tolist())
 
     @cached_property
     def boundary(self) -> Line:
         """The boundary as a line."""
-        return Line(self.plane, tuple(sorted(self.edge_set)))
+        return Line(self.plane, tuple(self.edge_set))
 
     @cached_property
-    def star(self) -> dict[int, tuple[int, int]]:
+    def star(self) -> dict[Vertex, tuple[int, int]]:
         """Boundary vertex to (sectors inside, boundary darts), both masks by rank."""
         plane = self.plane
         twins = self.darts ^ 1
-        star: dict[int, tuple[int, int]] = {}
-        low: dict[int, tuple[int, bool]] = {}  # the boundary dart of lowest rank, and whether it leaves
+        star: dict[Vertex, tuple[int, int]] = {}
+        low: dict[Vertex, tuple[int, bool]] = {}  # the boundary dart of lowest rank, and whether it leaves
         for darts, leaves in ((self.darts, True), (twins, False)):
             for v, r in zip(plane.tail[darts].tolist(), plane.rank[darts].tolist(), strict=True):
                 # below r, toggled: in the end a sector is set when an odd number of boundary darts lies above it
@@ -325,12 +326,12 @@ class Region(Immutable):
         return star
 
     @cached_property
-    def rims(self) -> tuple[frozenset[int], ...]:
+    def rims(self) -> tuple[frozenset[Vertex], ...]:
         """The vertex sets of the connected parts of the boundary, by lowest vertex."""
         return _pieces(self.plane, self.darts.tolist())
 
     @cached_property
-    def rim_darts(self) -> tuple[int, ...]:
+    def rim_darts(self) -> tuple[Dart, ...]:
         """One boundary dart for each of `rims`."""
         at = {int(self.plane.tail[d]): d for d in reversed(self.darts.tolist())}
         return tuple(at[min(rim)] for rim in self.rims)
@@ -477,7 +478,7 @@ def _inside(plane: PlaneMap, ends: NDArray[np.integer[Any]], faces: NDArray[np.i
     return (np.searchsorted(ends, numbers, side="right") & 1).astype(np.bool_)
 
 
-def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]:
+def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[Vertex], ...]:
     """Vertex sets of the connected pieces of a few edges, by union-find."""
     parent: dict[int, int] = {}
 
@@ -492,9 +493,9 @@ def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]
         a, b = find(u), find(v)
         if a != b:
             parent[max(a, b)] = min(a, b)
-    pieces: dict[int, set[int]] = {}
+    pieces: dict[int, set[Vertex]] = {}
     for v in parent:
-        pieces.setdefault(find(v), set()).add(v)
+        pieces.setdefault(find(v), set()).add(Vertex(v))
     return tuple(frozenset(pieces[root]) for root in sorted(pieces))
 
 

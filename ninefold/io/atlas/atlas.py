@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from ninefold.errors import AtlasError, BadInput, NinefoldError, UnknownName
-from ninefold.mapping import Line, Point, Region
+from ninefold.mapping import Line, Point, Region, Vertex
 from ninefold.mapping.robot.mapper import Mapper
 from ninefold.mapping.robot.walk import Walk, WalkHeader
 from ninefold.mapping.sets import same_map
@@ -360,7 +360,7 @@ class Atlas:
             return self.parse(item), item
         if not isinstance(item, Point | Line | Region):
             raise BadInput(f"a set is a point, line or region of the map, or its text, not {item!r}")
-        same_map(item, Point(self.plane, 0))
+        same_map(item, Point(self.plane, Vertex(0)))
         return item, item.text
 
     def rename(self, old: str, new: str) -> None:
