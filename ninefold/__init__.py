@@ -10,7 +10,7 @@ Examples
 >>> square = nf.mapping.PlaneMap.from_rotation(
 ...     {"a": ["b", "d"], "b": ["c", "a"], "c": ["d", "b"], "d": ["a", "c"]}, outer=("b", "a"))
 >>> room = square.cycle(["a", "b", "c", "d"])
->>> nf.reasoner.sets.relate(square.vertex("a"), room).name
+>>> nf.relate(square.vertex("a"), room).name
 'meet'
 """
 
