@@ -9,7 +9,7 @@ Examples
 
 from __future__ import annotations
 
-__all__ = ["counted", "quoted", "shortened"]
+__all__ = ["LONGEST_QUOTE", "counted", "quoted", "shortened"]
 
 LONGEST_QUOTE = 80
 """Characters of given text that a message repeats."""

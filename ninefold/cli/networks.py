@@ -5,14 +5,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, Force
 from ._output import note, notes, print_json, progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ninefold.reasoner.networks.network import Network, Statement
+    from ninefold.reasoner.networks.network import Network
     from ninefold.reasoner.networks.scenario import Scenario
+    from ninefold.reasoner.networks.statement import Statement
 
 __all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 
@@ -22,14 +25,18 @@ LISTED = 1000
 """Entities up to which ``check --json`` writes the scenario out; it holds every pair."""
 
 NetPath = Annotated[
-    Path, typer.Argument(metavar="NET", help="A network: .csp, .csv or .json.", show_default=False)
+    Path, typer.Argument(metavar="NET", help="A file of declared relations: .csp, .csv or .json.", show_default=False)
 ]  # fmt: skip
 CalculusName = Annotated[
     str | None,
-    typer.Option("--calculus", help="rcc8, rcc5, point, allen or a .spec file, where NET does not say.", show_default=False),
+    typer.Option(
+        "--calculus",
+        help="rcc8, rcc5, point, allen or a .spec file; needed where NET is not in rcc8 and does not say.",
+        show_default=False,
+    ),
 ]
 Budget = Annotated[float | None, typer.Option(min=0.001, help="Seconds after which to give up.", show_default=False)]
-Seed = Annotated[int, typer.Option(min=0, help="Of the search; the same seed gives the same run.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of random choices; the same seed gives the same answer.")]
 
 
 def check(
@@ -52,8 +59,8 @@ def check(
     """Decide whether a network is consistent, and show a scenario or a minimal conflict."""
     import time
 
+    from ninefold._files import published, refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import published, refuse_existing
     from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
     from ninefold.reasoner.networks.consistency import check as decide
 
@@ -80,6 +87,7 @@ def check(
         if draw is not None:
             _draw(verdict.scenario, draw, title=net.stem, force=force)
             report["drawing"] = str(draw)
+            text += f"\n{draw}: a drawing of {counted(network.n_entities, 'region')}, checked pair by pair"
     elif isinstance(verdict, Inconsistent):
         report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
         if not no_conflict:
@@ -225,7 +233,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop)} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -253,7 +261,7 @@ def scenarios(
     if as_json:
         print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})
     else:
-        print(f"{'' if exact else 'more than '}{len(found)} scenario{'' if len(found) == 1 else 's'}")
+        print(f"{'' if exact else 'more than '}{counted(len(found), 'scenario')}")
         for number, scenario in enumerate(found, start=1):
             print(f"{number}: " + "; ".join(f"{a} {r} {b}" for a, b, r in scenario.triples()))
     return YES if found else NO
@@ -304,7 +312,7 @@ def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 
 def _counts(network: "Network") -> str:
-    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+    return f"{counted(network.n_entities, 'entity', 'entities')}, {counted(network.n_statements, 'statement')}"
 
 
 def _triples(scenario: "Scenario") -> list[list[str]]:
@@ -341,12 +349,12 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
         if found is None:
             return [], ""
         kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
-        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 
 
 def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
-    from ninefold.io.files import published
+    from ninefold._files import published
     from ninefold.layout.realization import realize
     from ninefold.layout.witness import witness_svg
 

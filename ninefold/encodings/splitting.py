@@ -34,6 +34,7 @@ from functools import cache
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .encoding import Clause, Constraint, Encoding, label_matrix
@@ -139,7 +140,7 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
     theory = HORN_THEORIES.get(calculus.name)
     if theory is None or theory.calculus != calculus:
         known = " and ".join(HORN_THEORIES)
-        raise BadInput(f"no Horn theory of {calculus.name!r} is known, only of {known}: use another encoding")
+        raise BadInput(f"no Horn theory of {quoted(calculus.name)} is known, only of {known}: use another encoding")
     given = label_matrix(calculus, n, constraints)
     triangles: Iterable[tuple[int, int, int]]
     if order is None:

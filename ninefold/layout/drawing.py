@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._files import write_text
 from ninefold._wording import counted
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.immutable import Immutable, freeze, frozen_copy
@@ -231,20 +232,14 @@ class Drawing(Immutable):
         return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width)
 
     def save(self, path: str | Path, **options: Any) -> None:
-        """Write the drawing as an SVG file; options as for `to_svg`.
+        """Write the drawing as an SVG file, whole or not at all; a file that is there is replaced. Options as for `to_svg`.
 
         Raises
         ------
         BadInput
-            If the file cannot be written.
+            If the file cannot be written; what was there before stays.
         """
-        from pathlib import Path
-
-        text = self.to_svg(**options)
-        try:
-            Path(path).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise BadInput(f"cannot write the drawing to {str(path)!r}: {error.strerror or error}") from None
+        write_text(path, self.to_svg(**options), force=True)
 
     def plot(self, *, highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None, axes: Any = None) -> Any:
         """Draw on matplotlib axes and return them; see `ninefold.layout.plot`.

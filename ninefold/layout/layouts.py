@@ -74,7 +74,7 @@ def draw(
 
 def _no_map(given: object) -> str:
     if isinstance(given, Point | Line | Region):
-        return f"draw takes a map, and {given!r} is a set of one: draw(X.plane, highlight=[X]) shows a set X on its map"
+        return f"draw takes a map, and {quoted(given)} is a set of one: draw(X.plane, highlight=[X]) shows X on its map"
     if isinstance(getattr(type(given), "plane", None), property):  # a mapper, an atlas
         return f"draw takes a map, not the {type(given).__name__} that holds one: draw(X.plane)"
     if hasattr(type(given), "to_map"):

@@ -56,7 +56,7 @@ def render(
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
-        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {theme!r}")
+        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {quoted(theme)}")
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ninefold._wording import counted
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, NotPlane
 from ninefold.immutable import Immutable
 
@@ -76,7 +76,7 @@ def derive(tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: N
     rank, first, bad = _orbits.rotation_ranks.for_work(size)(tail, next_ccw, n_vertices)
     if bad >= 0:
         raise BadInput(
-            f"next_ccw is no rotation system: around vertex {vertex_names[int(tail[bad])]!r} the darts do not form "
+            f"next_ccw is no rotation system: around vertex {quoted(vertex_names[int(tail[bad])])} the darts do not form "
             f"one cycle (see dart {int(bad)})"
         )
     next_face = face_permutation(next_ccw)
@@ -190,8 +190,8 @@ def component_walks(
     if wrong.size:
         dart = int(np.flatnonzero(real & (tail == wrong[0]))[0])
         raise NotPlane(
-            f"the headings at the tail of edge {edge_names[dart >> 1]!r} do not increase counter-clockwise in the order "
-            "of the rotation; sort the rotation by heading, or leave the headings out"
+            f"the headings at the tail of edge {quoted(edge_names[dart >> 1])} do not increase counter-clockwise in the "
+            "order of the rotation; sort the rotation by heading, or leave the headings out"
         )
     lowest = first_darts(face_of, int(n_faces))
     settled = settle_turns(heading, turn)
@@ -202,8 +202,8 @@ def component_walks(
     if odd.size:
         edge = edge_names[int(lowest[odd[0]]) >> 1]
         raise NotPlane(
-            f"the face along edge {edge!r} turns {int(turns[odd[0]]):+d} times, and in a plane drawing every face turns "
-            "exactly once: a closure or a heading is wrong, or edges cross"
+            f"the face along edge {quoted(edge)} turns {int(turns[odd[0]]):+d} times, and in a plane drawing every face "
+            "turns exactly once: a closure or a heading is wrong, or edges cross"
         )
     outer = np.bincount(component[tail[lowest[turns < 0]]], minlength=int(component.max()) + 1)
     has_edge = np.zeros(outer.size, np.bool_)
@@ -212,8 +212,8 @@ def component_walks(
     if bad.size:
         dart = int(np.flatnonzero(real & (component[tail] == bad[0]))[0])
         raise NotPlane(
-            f"{int(outer[bad[0]])} faces of the part with edge {edge_names[dart >> 1]!r} turn clockwise, and in a plane "
-            "drawing exactly one does, the outer face: a closure or a heading is wrong, or edges cross"
+            f"{int(outer[bad[0]])} faces of the part with edge {quoted(edge_names[dart >> 1])} turn clockwise, and in a "
+            "plane drawing exactly one does, the outer face: a closure or a heading is wrong, or edges cross"
         )
     return Walks(lowest, turns < 0)
 

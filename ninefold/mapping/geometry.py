@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from . import _orbits, checks
@@ -169,7 +170,7 @@ def bearings(
     spike = np.flatnonzero(_inner_bends(start, len(bend)) & (np.abs(bend) > np.pi - 1e-12))
     if spike.size:
         e = int(np.searchsorted(start, spike[0], side="right")) - 1
-        raise BadInput(f"the path of edge {names[e]!r} turns back on itself; a path may not retrace its way")
+        raise BadInput(f"the path of edge {quoted(names[e])} turns back on itself; a path may not retrace its way")
     return heading, turn, line, start
 
 
@@ -193,13 +194,13 @@ def _polyline(
         try:
             line = np.asarray(path, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
-            raise BadInput(f"the path of edge {names[e]!r} must be a (k, 2) array of numbers") from None
+            raise BadInput(f"the path of edge {quoted(names[e])} must be a (k, 2) array of numbers") from None
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
-            raise BadInput(f"the path of edge {names[e]!r} must be finite points of shape (k, 2), k at least 2")
+            raise BadInput(f"the path of edge {quoted(names[e])} must be finite points of shape (k, 2), k at least 2")
         if float(np.abs(line).max()) > LARGEST_COORDINATE:
-            raise BadInput(f"the path of edge {names[e]!r} {_TOO_FAR}")
+            raise BadInput(f"the path of edge {quoted(names[e])} {_TOO_FAR}")
         if not (np.array_equal(line[0], a) and np.array_equal(line[-1], b)):
-            raise BadInput(f"the path of edge {names[e]!r} does not begin and end at the points it joins")
+            raise BadInput(f"the path of edge {quoted(names[e])} does not begin and end at the points it joins")
         line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
     if len(line) < 2 or (len(line) == 2 and np.array_equal(line[0], line[1])):
         raise _no_length(names[e])
@@ -207,7 +208,7 @@ def _polyline(
 
 
 def _no_length(name: str) -> BadInput:
-    return BadInput(f"edge {name!r} has no length; drop it, merge its ends, or give a loop its path")
+    return BadInput(f"edge {quoted(name)} has no length; drop it, merge its ends, or give a loop its path")
 
 
 def rotation_by_heading(
@@ -217,8 +218,9 @@ def rotation_by_heading(
     next_ccw, closest, at = _orbits.sort_rotation.for_work(tail.size)(tail, heading, n_vertices)
     if closest < _CLOSEST:
         other = int(next_ccw[at])
+        first, second, vertex = e_names[int(at) >> 1], e_names[other >> 1], v_names[int(tail[at])]
         raise BadInput(
-            f"edges {e_names[int(at) >> 1]!r} and {e_names[other >> 1]!r} leave vertex {v_names[int(tail[at])]!r} in the "
+            f"edges {quoted(first)} and {quoted(second)} leave vertex {quoted(vertex)} in the "
             "same direction; merge them, or give the path of one a first piece of its own"
         )
     return np.asarray(next_ccw, dtype=np.int32)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from numbers import Integral
 from typing import Any
 
-from ninefold._wording import counted
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, UnknownName
 from ninefold.immutable import Immutable
 
@@ -50,7 +50,7 @@ class Names(Immutable, Sequence[str]):
         self._set_state({"kind": kind, "size": size, "_labels": given})
         if self._rows is not None and given is not None and len(self._rows) != size:
             twice = next(label for row, label in enumerate(given) if self._rows[label] != row)
-            raise BadInput(f"the {kind} name {twice!r} is given twice; names must be unique")
+            raise BadInput(f"the {kind} name {quoted(twice)} is given twice; names must be unique")
 
     def _state(self) -> dict[str, Any]:
         return {"kind": self.kind, "size": self.size, "_labels": self._labels}
@@ -128,12 +128,12 @@ class Names(Immutable, Sequence[str]):
 
 def _label(kind: str, label: str | int) -> str:
     if isinstance(label, bool) or not isinstance(label, str | Integral):
-        raise BadInput(f"a {kind} name is a string, not {label!r}")
+        raise BadInput(f"a {kind} name is a string, not {quoted(label)}")
     text = _text(label)
     if any(0xD800 <= ord(c) < 0xE000 for c in text):
-        raise BadInput(f"the {kind} name {label!r} cannot be written as text: it holds half a character")
+        raise BadInput(f"the {kind} name {quoted(label)} cannot be written as text: it holds half a character")
     if not text or any(ord(c) < 32 for c in text):
-        raise BadInput(f"a {kind} name is printable text, not {label!r}")
+        raise BadInput(f"a {kind} name is printable text, not {quoted(label)}")
     return text
 
 

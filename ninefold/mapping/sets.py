@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from ninefold._wording import counted, quoted
+from ninefold._wording import counted, quoted, shortened
 from ninefold.errors import BadInput, DifferentMaps, EmptySet
 from ninefold.immutable import Immutable, freeze, frozen_copy
 
+from ._texts import written
 from .containment import ends_of_numbers, numbers_of_ends
 from .numbering import Dart, Edge, Face, Vertex
 from .split import faces_beside
@@ -79,7 +80,7 @@ class Point(Immutable):
     @property
     def text(self) -> str:
         """The text form that `PlaneMap.parse` reads back."""
-        return f"vertex:{self.name}"
+        return written("vertex", [self.name])
 
     def __repr__(self) -> str:
         return f"Point({self.name})"
@@ -174,8 +175,8 @@ class Line(Immutable):
 
     @property
     def text(self) -> str:
-        """The text form that `PlaneMap.parse` reads back (not where a name has a comma: use lists then)."""
-        return "line:" + ",".join(f"@{name}" for name in self.edge_names)
+        """The text form that `PlaneMap.parse` reads back."""
+        return written("line", [f"@{name}" for name in self.edge_names])
 
     def __or__(self, other: Line) -> Line:
         """Return the union of two lines of one map."""
@@ -500,4 +501,5 @@ def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[Vertex], .
 
 
 def _shorten(names: Sequence[str]) -> str:
-    return " ".join(names) if len(names) <= 6 else f"{' '.join(names[:4])} ... ({len(names)} edges)"
+    shown = [shortened(name) for name in names[:6]]
+    return " ".join(shown) if len(names) <= 6 else f"{' '.join(shown[:4])} ... ({len(names)} edges)"

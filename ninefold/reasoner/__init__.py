@@ -27,11 +27,12 @@ if TYPE_CHECKING:
     from .networks.enumeration import Count, count, scenarios, some_scenario
     from .networks.explanation import Explanation, explain
     from .networks.inference import Inference, MinimalNetwork, entails, infer, minimal
-    from .networks.network import Constraints, Network, Statement
+    from .networks.network import Constraints, Network
     from .networks.proofs import Proof, prove
     from .networks.questions import Answer, ask
     from .networks.repairs import Repair, repair
     from .networks.scenario import Scenario
+    from .networks.statement import Statement
     from .sets.bulk import SetTable, relate_all, relate_pairs
     from .sets.nesting import containment_tree
     from .sets.relate import relate
@@ -91,11 +92,12 @@ __getattr__, __dir__ = attach(
         "networks.enumeration": ("Count", "count", "scenarios", "some_scenario"),
         "networks.explanation": ("Explanation", "explain"),
         "networks.inference": ("Inference", "MinimalNetwork", "entails", "infer", "minimal"),
-        "networks.network": ("Constraints", "Network", "Statement"),
+        "networks.network": ("Constraints", "Network"),
         "networks.proofs": ("Proof", "prove"),
         "networks.questions": ("Answer", "ask"),
         "networks.repairs": ("Repair", "repair"),
         "networks.scenario": ("Scenario",),
+        "networks.statement": ("Statement",),
         "sets.bulk": ("SetTable", "relate_all", "relate_pairs"),
         "sets.nesting": ("containment_tree",),
         "sets.relate": ("relate",),

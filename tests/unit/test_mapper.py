@@ -195,7 +195,7 @@ def test_open_exits_are_kept_until_travelled():
     for event in events(90, Visit("b", exits(-90, 10))):
         mapper.step(event)
     assert [(place, round(heading.degrees)) for place, heading in mapper.open_exits] == [("a", 0), ("a", 180), ("b", 10)]
-    assert mapper.warnings == ("3 exits were never travelled, the first at 'a', 0.0 deg",)
+    assert mapper.warnings == ("3 exits were never travelled, the first at 'a', 0 deg",)
     assert (mapper.n_edges, mapper.n_faces) == (1, 1)
 
 
@@ -252,7 +252,7 @@ def test_tolerance_comes_from_the_header_or_the_argument():
 
 
 def test_repr():
-    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edges, 1 faces)"
+    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edge, 1 face)"
 
 
 # -- order of events ------------------------------------------------------------------------------------------------------
@@ -400,9 +400,21 @@ def test_exits_that_miss_a_known_edge():
 
 
 def test_a_leg_along_no_exit():
-    refused(WalkError, "the leg leaves 'a' at 45 deg, along none of its 2 exits", Visit("a", exits(0, 90)), 45, "b")
-    refused(WalkError, "the leg reaches 'b' at 180 deg, along none of its 1 exit$", "a", 0, Visit("b", exits(90)))
-    refused(WalkError, "the leg leaves 'a' at 0 deg, along none of its 0 exits", Visit("a", ()), 0, "b")
+    refused(
+        WalkError,
+        "the leg leaves 'a' at 45 deg, along none of its 2 exits; exits seen: 0, 90 deg$",
+        Visit("a", exits(0, 90)),
+        45,
+        "b",
+    )
+    refused(
+        WalkError,
+        "the leg reaches 'b' at 180 deg, along none of its 1 exit; exits seen: 90 deg$",
+        "a",
+        0,
+        Visit("b", exits(90)),
+    )
+    refused(WalkError, "the leg leaves 'a' at 0 deg, along none of its 0 exits; exits seen: none$", Visit("a", ()), 0, "b")
 
 
 # -- the plane ------------------------------------------------------------------------------------------------------------

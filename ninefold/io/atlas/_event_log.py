@@ -11,6 +11,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError
 from ninefold.mapping.robot.mapper import Mapper
 from ninefold.mapping.robot.walk import WalkHeader
@@ -185,7 +186,7 @@ def checked_time(event: Event, before: float) -> float:
         return before
     if isinstance(event.t, bool) or not isinstance(event.t, int | float) or not before <= event.t < math.inf:
         after = "" if before == -math.inf else f" that does not go back from {before:g}"
-        raise BadInput(f"the time of an event is a finite number of seconds{after}, not {event.t!r}")
+        raise BadInput(f"the time of an event is a finite number of seconds{after}, not {quoted(event.t)}")
     return float(event.t)
 
 

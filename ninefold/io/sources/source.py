@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 from ninefold.immutable import Immutable, freeze, frozen_copy
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
     from ninefold.mapping import PlaneMap
     from ninefold.mapping.robot.simulated import SimulatedWorld
+
+    from .projection import Projection
 
 __all__ = ["Crossing", "Source"]
 
@@ -68,6 +71,9 @@ class Source(Immutable):
         Where it was read from, for messages.
     notes
         What the reader left out or changed, a sentence each.
+    projection
+        From the longitudes and latitudes of the file to `points`, or None where the file was in planar metres. Messages give
+        places in the coordinates of the file.
 
     Examples
     --------
@@ -87,6 +93,7 @@ class Source(Immutable):
     labels: tuple[str | None, ...]
     origin: str = ""
     notes: tuple[str, ...] = ()
+    projection: Projection | None = None
 
     def __post_init__(self) -> None:
         kept: dict[str, Any] = {
@@ -243,13 +250,18 @@ class Source(Immutable):
     def _crossing_sentence(self) -> str:
         first = self.crossings[0]
         a, b = (self.edge_names[e] for e in first.edges)
-        where = f"({first.at[0]:.1f}, {first.at[1]:.1f})"
-        what = f"{a!r} meets itself" if a == b else f"{a!r} and {b!r} {'overlap' if first.overlap else 'meet'}"
+        where = f"({first.at[0]:.1f}, {first.at[1]:.1f}) metres"
+        if self.projection is not None:
+            longitude, latitude = self.projection.degrees(first.at)
+            where = f"longitude {longitude:.6f}, latitude {latitude:.6f}"
+        what = f"{quoted(a)} meets itself"
+        if a != b:
+            what = f"{quoted(a)} and {quoted(b)} {'overlap' if first.overlap else 'meet'}"
         count = sum(crossing.places for crossing in self.crossings)
-        return f"edges meet at {count} place{'' if count == 1 else 's'} without a vertex: first, {what} near {where}"
+        return f"edges meet at {counted(count, 'place')} without a vertex: first, {what} near {where}"
 
     def __repr__(self) -> str:
-        return f"Source({self.origin}: {self.n_vertices} vertices, {self.n_edges} edges)"
+        return f"Source({self.origin}: {counted(self.n_vertices, 'vertex', 'vertices')}, {counted(self.n_edges, 'edge')})"
 
 
 def _crossings(source: Source) -> tuple[Crossing, ...]:

@@ -31,12 +31,14 @@ from typing import TYPE_CHECKING
 from ._sparse_trace import pairs_behind_refutation
 from .consistency import Consistent, Inconsistent, check
 from .derivation import RecordedClosure
+from .network import require_network
 from .refutation import refute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Conflict", "conflict"]
 
@@ -110,6 +112,7 @@ def conflict(net: Network, *, seed: int = 0, budget: float | None = None) -> Con
     ----------
     A closure, and one check for each statement that closure uses.
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     found = Shrinker(net, seed, deadline).conflict(range(net.n_statements))
     if found is None:

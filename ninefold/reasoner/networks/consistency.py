@@ -29,6 +29,7 @@ from ninefold.errors import BadInput
 from ..engine.engine import Engine
 from ..engine.graph import dense_frame, triangulated_frame
 from ..engine.tables import Tables
+from .network import require_network
 from .proofs import Proof, digest_of
 
 if TYPE_CHECKING:
@@ -164,6 +165,7 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     if budget is not None and not budget > 0:
         raise BadInput(f"a budget is a positive number of seconds, not {budget!r}")
     deadline = None if budget is None or math.isinf(budget) else time.perf_counter() + budget
+    require_network(net)
     decided = net.copy()
     constraints = decided.constraints()
     if proof and method != "auto":

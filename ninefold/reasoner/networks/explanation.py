@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from .derivation import Fact, Proof
-    from .network import Network, Statement
+    from .network import Network
     from .refutation import Refutation
+    from .statement import Statement
 
 __all__ = ["Explanation", "explain"]
 

@@ -36,6 +36,7 @@ from ninefold.errors import BadInput
 from .conflicts import Conflict, conflict
 from .consistency import Consistent, Inconsistent, check
 from .enumeration import closed
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -149,6 +150,7 @@ def infer(net: Network, a: str | int, b: str | int, *, seed: int = 0, budget: fl
     ----------
     One closure, and one check for each base relation that it leaves.
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     i, j = net.index(a), net.index(b)
     first, second = net.entities[i], net.entities[j]

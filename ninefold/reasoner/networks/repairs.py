@@ -35,11 +35,13 @@ from ninefold.errors import BadInput
 
 from .conflicts import Conflict, Shrinker
 from .consistency import Consistent, Inconsistent, check
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Repair", "repair"]
 
@@ -107,6 +109,7 @@ def repair(net: Network, *, seed: int = 0, budget: float | None = None) -> Repai
     ----------
     One conflict for each round; there can be exponentially many rounds.
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     work = _Work(net, seed, deadline)
     dropped: set[int] = set()

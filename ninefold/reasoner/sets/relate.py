@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 from ninefold.mapping.numbering import Face
 from ninefold.mapping.sets import Line, Point, Region, same_map
@@ -65,7 +66,7 @@ def relate(x: Set, y: Set) -> Relation:
     """
     for given in (x, y):
         if not isinstance(given, Point | Line | Region):
-            raise BadInput(f"relate takes points, lines and regions of a map, not {given!r}")
+            raise BadInput(f"relate takes points, lines and regions of a map, not {quoted(given)}")
     same_map(x, y)
     return Relation(relate_code(x, y))
 

@@ -134,13 +134,13 @@ class Relation:
             If no two sets of these dimensions have that matrix of dimensions.
         """
         if len(text) != 9 or set(text.upper()) - set("F012") or not all(d in (0, 1, 2) for d in dimensions):
-            raise BadInput(f"{text!r} is no DE-9IM matrix: nine letters of F, 0, 1, 2")
+            raise BadInput(f"{quoted(text)} is no DE-9IM matrix: nine letters of F, 0, 1, 2")
         bits = sum(1 << k for k, letter in enumerate(text.upper()) if letter != "F")
         base = bits | dimensions[0] << X_SHIFT | dimensions[1] << Y_SHIFT
         for code in (base, base | CURVE):
             if de9im_of_code(code) == text.upper():
                 return cls(code)
-        raise BadInput(f"{text!r} is not the matrix of sets of dimensions {dimensions[0]} and {dimensions[1]}")
+        raise BadInput(f"{quoted(text)} is not the matrix of sets of dimensions {dimensions[0]} and {dimensions[1]}")
 
     @property
     def matrix(self) -> NDArray[np.bool_]:
