@@ -36,8 +36,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ninefold._wording import quoted
-from ninefold.encodings.model import RCC5_MODEL, RCC8_MODEL, matches
-from ninefold.encodings.rcc8 import RCC5, RCC8
+from ninefold.encodings.model import matches
+from ninefold.encodings.rcc8 import RCC8
+from ninefold.encodings.theory import theory_of
 from ninefold.errors import BadInput, NinefoldError
 from ninefold.reasoner.networks.scenario import Scenario
 from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
@@ -83,11 +84,12 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     """
     if not isinstance(scenario, Scenario):
         raise BadInput(_not_a_scenario(scenario))
-    if scenario.calculus not in (RCC8, RCC5):
+    known = theory_of(scenario.calculus).model
+    if known is None:
         raise BadInput(f"only regions can be drawn: scenarios of rcc8 and rcc5, not of {scenario.calculus.name}")
     if not scenario.is_closed():
         raise BadInput("some triangle of the scenario contradicts the composition table, so nothing can be drawn")
-    relations = _Relations(scenario)
+    relations = _Relations(scenario, known.value)
     states = _Islands(relations).lay()
     places, radii = _places(states, relations.radius), relations.radius
     shapes = {
@@ -109,11 +111,10 @@ def _not_a_scenario(given: object) -> str:
 class _Relations:
     """A scenario as matrices, x by y."""
 
-    def __init__(self, scenario: Scenario) -> None:
-        names = scenario.calculus.bases
+    def __init__(self, scenario: Scenario, model: tuple[BaseMeaning, ...]) -> None:
         self.n = len(scenario.entities)
         self.bases = scenario.bases
-        self.model: tuple[BaseMeaning, ...] = RCC8_MODEL if len(names) == len(RCC8_MODEL) else RCC5_MODEL
+        self.model = model
         self.passes_half = self._where("TPP", "PP", "EQ")
         self.passes_both = self._where("NTPP")
         self.no_point = self._where("DC")

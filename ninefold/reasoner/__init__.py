@@ -5,7 +5,8 @@ bulk, and `containment_tree` orders regions by what is inside what. A `Relation`
 word.
 
 **On declared relations** (`ninefold.reasoner.networks`). A `Network` collects statements. `check` decides whether they can
-all be true, with a scenario or a proof (`prove` confirms it); `conflict` finds a minimal set that cannot, `explain` says why
+all be true, with a scenario or a proof (`prove` confirms it, `to_drat` writes it for other checkers); `conflict` finds a
+minimal set that cannot, `explain` says why
 in words; `infer`, `minimal` and `entails` tell what follows, `ask` answers Boolean questions, `repair` finds the cheapest
 statements to drop, `scenarios` and `count` enumerate. The search behind them is `ninefold.reasoner.engine`.
 
@@ -22,6 +23,7 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .knowledge import Contradiction, KnowledgeBase
+    from .networks.clausal import ClausalProof, to_drat
     from .networks.conflicts import Conflict, conflict
     from .networks.consistency import Consistent, Inconsistent, Unknown, Verdict, check
     from .networks.enumeration import Count, count, scenarios, some_scenario
@@ -42,6 +44,7 @@ __all__ = [
     "NAMES",
     "RCC8_OF_NAME",
     "Answer",
+    "ClausalProof",
     "Conflict",
     "Consistent",
     "Constraints",
@@ -81,12 +84,14 @@ __all__ = [
     "repair",
     "scenarios",
     "some_scenario",
+    "to_drat",
 ]
 
 __getattr__, __dir__ = attach(
     __name__,
     {
         "knowledge": ("Contradiction", "KnowledgeBase"),
+        "networks.clausal": ("ClausalProof", "to_drat"),
         "networks.conflicts": ("Conflict", "conflict"),
         "networks.consistency": ("Consistent", "Inconsistent", "Unknown", "Verdict", "check"),
         "networks.enumeration": ("Count", "count", "scenarios", "some_scenario"),
