@@ -196,7 +196,7 @@ def run_demo(
     with _timed(seconds, "draw"):
         shown = _shown(named)
         known = f"{source}, as the robot knows it: no coordinates"
-        draw(plane, layout="tutte").save(map_file, highlight=shown, title=known)
+        draw(plane).save(map_file, highlight=shown, title=known)
         draw(plane, layout="schnyder").save(grid_file, highlight=shown, title=known)
         ground.save(streets_file, highlight=shown, title=f"{source}, on the ground")
         write_text(figure_file, _figure_eight(), force=True)

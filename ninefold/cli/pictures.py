@@ -12,14 +12,14 @@ from ._output import note, notes, print_json, progress
 
 __all__ = ["draw", "verify"]
 
-LayoutName = Annotated[str, typer.Option("--layout", metavar="schnyder|tutte", help="How the map is laid out.")]
+LayoutName = Annotated[str, typer.Option("--layout", metavar="auto|tutte|schnyder", help="How the map is laid out.")]
 
 
 def draw(
     atlas: AtlasPath,
     *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE.svg", help="The picture.", show_default=False)],
-    layout: LayoutName = "tutte",
+    layout: LayoutName = "auto",
     highlight: Annotated[
         list[str] | None,
         typer.Option(

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ninefold._wording import quoted
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, NotPlane
+from ninefold.immutable import Immutable
 
 from . import _orbits
 from .genus import offending_part
@@ -35,7 +36,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Derived:
+class Derived(Immutable):
     """Everything that follows from tail and next_ccw alone.
 
     Attributes
@@ -88,10 +89,10 @@ def derive(tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: N
     if genus2:
         edges, shortest = offending_part(tail.tolist(), next_ccw.tolist(), first.tolist())
         real = [edge_names[e] for e in edges if e < len(edge_names)]
-        shown = ", ".join(real[:12]) + (f", ... ({len(real)} edges)" if len(real) > 12 else "")
+        shown = ", ".join(real[:12]) + (f", ... ({counted(len(real), 'edge')})" if len(real) > 12 else "")
         raise NotPlane(
             f"the rotation system has genus {genus2 // 2}, so no drawing in the plane has it; "
-            f"{'a shortest' if shortest else 'an'} offending part is the edges {shown}",
+            f"{'a shortest' if shortest else 'an'} offending part is the edge{'' if len(real) == 1 else 's'} {shown}",
             genus=genus2 // 2,
             edges=real,
         )
@@ -143,7 +144,8 @@ def components_without_tethers(
     _, component, count = forest(tail, strip_tethers(next_ccw, tether), first)
     if count - 1 != int(tether.sum()):
         raise BadInput(
-            f"{int(tether.sum())} tethers for {count} components: tethers must be bridges, one fewer than components"
+            f"{counted(int(tether.sum()), 'tether')} for {counted(int(count), 'component')}: tethers must be bridges, one "
+            "fewer than components"
         )
     return np.asarray(component, dtype=np.int32)
 

@@ -28,6 +28,9 @@ __all__ = ["GeometricDarts", "bearings", "checked_edges", "checked_points", "dar
 
 _CLOSEST = 1e-12
 
+LARGEST_COORDINATE = 1e150
+"""Beyond it the product of two differences of coordinates, which says how two edges turn, overflows."""
+
 
 class GeometricDarts(NamedTuple):
     """What coordinates say of a map, before it is checked.
@@ -56,6 +59,11 @@ class GeometricDarts(NamedTuple):
     derived: checks.Derived | None
 
 
+_TOO_FAR = (
+    f"lies so far out that differences of coordinates cannot be computed with; coordinates go up to {LARGEST_COORDINATE:g}"
+)
+
+
 def darts_of_geometry(
     points: ArrayLike,
     edges: ArrayLike,
@@ -69,7 +77,8 @@ def darts_of_geometry(
     Raises
     ------
     BadInput
-        For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+        For coordinates that are not finite or beyond `LARGEST_COORDINATE`, edges without length, two edges that leave a
+        vertex in one direction.
     """
     xy, ends = checked_points(points), checked_edges(edges)
     n_vertices, n_edges = len(xy), len(ends)
@@ -105,6 +114,9 @@ def checked_points(points: ArrayLike) -> NDArray[np.float64]:
         raise BadInput(f"points must have shape (V, 2) with V at least 1, not {xy.shape}")
     if not np.isfinite(xy).all():
         raise BadInput(f"point {int(np.flatnonzero(~np.isfinite(xy).all(axis=1))[0])} is not finite")
+    if float(np.abs(xy).max()) > LARGEST_COORDINATE:
+        at = int(np.flatnonzero((np.abs(xy) > LARGEST_COORDINATE).any(axis=1))[0])
+        raise BadInput(f"point {at}, ({xy[at, 0]:g}, {xy[at, 1]:g}), {_TOO_FAR}")
     return xy
 
 
@@ -185,6 +197,8 @@ def _polyline(
             raise BadInput(f"the path of edge {quoted(names[e])} must be a (k, 2) array of numbers") from None
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise BadInput(f"the path of edge {quoted(names[e])} must be finite points of shape (k, 2), k at least 2")
+        if float(np.abs(line).max()) > LARGEST_COORDINATE:
+            raise BadInput(f"the path of edge {quoted(names[e])} {_TOO_FAR}")
         if not (np.array_equal(line[0], a) and np.array_equal(line[-1], b)):
             raise BadInput(f"the path of edge {quoted(names[e])} does not begin and end at the points it joins")
         line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]

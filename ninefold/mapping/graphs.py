@@ -14,6 +14,7 @@ import numpy as np
 from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
+from .numbering import Edge, Vertex
 from .select import darts_between
 from .sets import Line, Point, same_map
 
@@ -77,7 +78,7 @@ def to_networkx(plane: PlaneMap, kind: str = "multigraph") -> Any:
     embedding.add_nodes_from(names)
     for v in range(plane.n_vertices):
         before = None
-        for d in reversed(plane.darts_at(v)):  # clockwise
+        for d in reversed(plane.darts_at(Vertex(v))):  # clockwise
             w = names[int(plane.tail[d ^ 1])]
             embedding.add_half_edge(names[v], w, ccw=before)  # w comes clockwise after `before`
             before = w
@@ -106,7 +107,7 @@ def shortest_path(source: Point, target: Point) -> Line:
         ) from None
     rows = [plane.vertex_names.row(name) for name in way]
     darts = tuple(min(darts_between(plane, u, v)) for u, v in pairwise(rows))
-    return Line(plane, tuple(sorted(d >> 1 for d in darts)), darts)
+    return Line(plane, tuple(Edge(d >> 1) for d in darts), darts)
 
 
 def bridges(plane: PlaneMap) -> tuple[str, ...]:

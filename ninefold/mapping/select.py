@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from contextlib import suppress
+from numbers import Integral
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from ninefold._wording import quoted, shortened
+from ninefold._wording import counted, quoted, shortened
 from ninefold.errors import AmbiguousDart, BadInput, EmptySet, NotACycle, UnknownName
 
+from .numbering import Dart, Edge, Vertex
 from .sets import Line, Point, Region
 
 if TYPE_CHECKING:
@@ -38,8 +40,8 @@ def edge(plane: PlaneMap, names: Sequence[Step]) -> Line:
         return Line(plane, (_edge_row(plane, names[0]),))
     if len(names) == 2:
         dart = _dart_between(plane, _vertex_row(plane, names[0]), _vertex_row(plane, names[1]))
-        return Line(plane, (dart >> 1,))
-    raise BadInput(f"an edge is named by its own name or by its two ends, not by {len(names)} names")
+        return Line(plane, (Edge(dart >> 1),))
+    raise BadInput(f"an edge is named by its own name or by its two ends, not by {counted(len(names), 'name')}")
 
 
 def line(plane: PlaneMap, edges: Iterable[Step]) -> Line:
@@ -62,7 +64,7 @@ def path(plane: PlaneMap, steps: Iterable[Step]) -> Line:
     if not darts:
         raise EmptySet("a path needs at least one edge; for a place alone use plane.vertex")
     _no_edge_twice(plane, darts, "path")
-    return Line(plane, tuple(sorted(d >> 1 for d in darts)), tuple(darts))
+    return Line(plane, tuple(Edge(d >> 1) for d in darts), tuple(darts))
 
 
 def cycle(plane: PlaneMap, steps: Iterable[Step] | None = None, edges: Iterable[Step] | None = None) -> Region:
@@ -80,7 +82,7 @@ def cycle(plane: PlaneMap, steps: Iterable[Step] | None = None, edges: Iterable[
     else:
         darts = _walk(plane, [] if steps is None else _list(steps, "cycle"), close=True)
         _no_edge_twice(plane, darts, "cycle")
-        rows = [d >> 1 for d in darts]
+        rows = [Edge(d >> 1) for d in darts]
     if not rows:
         raise EmptySet("a cycle needs at least one edge")
     if len(set(rows)) != len(rows):
@@ -92,10 +94,11 @@ def cycle(plane: PlaneMap, steps: Iterable[Step] | None = None, edges: Iterable[
 
 def region(plane: PlaneMap, faces: Iterable[int]) -> Region:
     """Return the union of bounded faces."""
-    chosen = list(faces)
-    if not all(isinstance(face, int | np.integer) and not isinstance(face, bool) for face in chosen):
-        raise BadInput(f"faces are given by number, not {chosen!r}")
-    return Region.from_faces(plane, chosen)
+    if isinstance(faces, Point | Line | Region):
+        raise BadInput(f"{quoted(faces)} is a set already; plane.region takes the numbers of faces, and X | Y joins regions")
+    if isinstance(faces, Integral):
+        raise BadInput(f"plane.region takes several face numbers, as in plane.region([{faces}]); plane.face({faces}) is one")
+    return Region.from_faces(plane, faces)
 
 
 def parse(plane: PlaneMap, text: str) -> Set:
@@ -153,7 +156,7 @@ def _listed(text: str) -> tuple[str, list[Step]]:
 def _one_vertex(plane: PlaneMap, parts: list[Step]) -> Point:
     if len(parts) != 1:
         raise BadInput(f"vertex: takes one name, not {len(parts)}")
-    return Point(plane, _vertex_row(plane, parts[0]))
+    return Point(plane, Vertex(_vertex_row(plane, parts[0])))
 
 
 def _one_face(plane: PlaneMap, parts: list[Step]) -> Region:
@@ -190,6 +193,10 @@ def _numbers(parts: list[Step]) -> list[int]:
 def _list(names: Iterable[Step], what: str) -> list[Step]:
     if isinstance(names, str):
         raise BadInput(f"a {what} takes a list of names, not the string {quoted(names)}; plane.parse reads text")
+    if isinstance(names, Point | Line | Region):
+        raise BadInput(f"a {what} takes a list of names, and {quoted(names)} is a set already")
+    if not hasattr(names, "__iter__"):
+        raise BadInput(f"a {what} takes a list of names, not {quoted(names)}")
     return list(names)
 
 
@@ -213,7 +220,7 @@ def _vertex_row(plane: PlaneMap, step: Step) -> int:
     return plane.vertex_names.row(name)
 
 
-def _edge_row(plane: PlaneMap, step: Step) -> int:
+def _edge_row(plane: PlaneMap, step: Step) -> Edge:
     """Return an edge given by name with or without ``@``; by an exact name, as it is."""
     exact, names = _exactly(step), plane.edge_names
     if exact is not None:
@@ -227,7 +234,7 @@ def _edge_row(plane: PlaneMap, step: Step) -> int:
         row = names.row(text if text in names and short not in names else short)
     if plane.tether[row]:
         raise UnknownName("edge", names[row])
-    return row
+    return Edge(row)
 
 
 def _edge_of_step(plane: PlaneMap, step: Step) -> int:
@@ -248,13 +255,14 @@ def _edge_of_step(plane: PlaneMap, step: Step) -> int:
     return -1
 
 
-def darts_between(plane: PlaneMap, u: int, v: int) -> list[int]:
+def darts_between(plane: PlaneMap, u: int, v: int) -> list[Dart]:
     """Return the darts from vertex u to vertex v (numbers), tethers left out; O(smaller degree)."""
-    darts = plane.darts_at(u) if plane.spokes[u] <= plane.spokes[v] else [d ^ 1 for d in plane.darts_at(v)]
+    at_u = plane.spokes[u] <= plane.spokes[v]
+    darts = plane.darts_at(Vertex(u)) if at_u else [Dart(d ^ 1) for d in plane.darts_at(Vertex(v))]
     return [d for d in darts if plane.tail[d] == u and plane.tail[d ^ 1] == v and not plane.tether[d >> 1]]
 
 
-def _dart_between(plane: PlaneMap, u: int, v: int) -> int:
+def _dart_between(plane: PlaneMap, u: int, v: int) -> Dart:
     found = darts_between(plane, u, v)
     edges = sorted({d >> 1 for d in found})
     if not edges:
@@ -270,7 +278,7 @@ def _dart_between(plane: PlaneMap, u: int, v: int) -> int:
     return min(found)
 
 
-def _walk(plane: PlaneMap, steps: list[Step], *, close: bool) -> list[int]:
+def _walk(plane: PlaneMap, steps: list[Step], *, close: bool) -> list[Dart]:
     """Turn steps into darts. After an ``@edge`` its own end may be named again; `close` goes back to the start."""
     if not steps:
         return []
@@ -285,13 +293,13 @@ def _walk(plane: PlaneMap, steps: list[Step], *, close: bool) -> list[int]:
         raise
 
 
-def _walk_from(plane: PlaneMap, start: int, steps: list[Step], edges: list[int], *, close: bool) -> list[int]:
+def _walk_from(plane: PlaneMap, start: int, steps: list[Step], edges: list[int], *, close: bool) -> list[Dart]:
     tail = plane.tail
-    at, darts = start, list[int]()
+    at, darts = start, list[Dart]()
     after_edge = True  # the first vertex of the list is where the walk stands
     for step, e in zip(steps, edges, strict=True):
         if e >= 0:
-            dart = 2 * e if tail[2 * e] == at else 2 * e + 1
+            dart = Dart(2 * e if tail[2 * e] == at else 2 * e + 1)
             if tail[dart] != at:
                 raise NotACycle(
                     f"edge {quoted(plane.edge_names[e])} does not leave {quoted(plane.vertex_names[at])}, where the way "
@@ -327,11 +335,11 @@ def _starts(plane: PlaneMap, steps: list[Step], edges: list[int]) -> list[int]:
         ends = {int(plane.tail[2 * edges[1]]), int(plane.tail[2 * edges[1] + 1])}
     else:
         to = _vertex_row(plane, steps[1])
-        ends = {to} if to in (u, v) else {int(plane.tail[d ^ 1]) for d in plane.darts_at(to)}
+        ends = {to} if to in (u, v) else {int(plane.tail[d ^ 1]) for d in plane.darts_at(Vertex(to))}
     return [at for at, far in ((u, v), (v, u)) if far in ends] or [v]
 
 
-def _no_edge_twice(plane: PlaneMap, darts: list[int], what: str) -> None:
+def _no_edge_twice(plane: PlaneMap, darts: Sequence[int], what: str) -> None:
     seen: set[int] = set()
     for d in darts:
         if d >> 1 in seen:
@@ -339,7 +347,7 @@ def _no_edge_twice(plane: PlaneMap, darts: list[int], what: str) -> None:
         seen.add(d >> 1)
 
 
-def _check_simple(plane: PlaneMap, rows: list[int]) -> None:
+def _check_simple(plane: PlaneMap, rows: Sequence[int]) -> None:
     """Check that the edges form one simple cycle: degree 2 at every vertex, and connected."""
     incident: dict[int, list[int]] = {}
     for e in rows:

@@ -7,6 +7,7 @@ import pytest
 
 from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
 from ninefold.mapping import Closure, Heading, Mapper, Samples, Visit, Walk, WalkHeader, build
+from ninefold.mapping.robot.legs import LegReader
 
 
 def events(*items):
@@ -275,7 +276,12 @@ def test_samples_too_coarse():
 
 
 def test_numbers_that_are_no_angles():
-    refused(WalkError, "numbers so large that their differences mean nothing", "a", Samples((1e17, 3.0)), "b")
+    with pytest.raises(WalkError, match=r"a sample of 1e\+17 radians is too large for an angle: beyond 8388608 radians"):
+        Samples((3.0, 1e17))
+    reader = LegReader()
+    reader.take((1e17, 3.0))
+    with pytest.raises(WalkError, match="numbers so large that their differences mean nothing"):
+        reader.read()
 
 
 def test_names_that_cannot_be():

@@ -302,3 +302,18 @@ def test_what_no_reader_would_take_is_not_written(tmp_path, walk):
     with pytest.raises(NinefoldError, match="cannot be written"):
         write_walk(walk, tmp_path / "walk.jsonl")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "limit"), [("yaw-deg", "4.81e+08 deg"), ("bearing-deg", "4.81e+08 deg"), ("yaw-rad", "8.39e+06 rad")]
+)
+@pytest.mark.parametrize("line", ['{"heading": 1e300}', '{"headings": [0, -1e300]}', '{"place": "a", "exits": [1e300, 0]}'])
+def test_numbers_too_large_for_an_angle_are_named_with_their_line(tmp_path, unit, limit, line):
+    path = tmp_path / "w.jsonl"
+    first = "" if "place" in line else '{"place": "a"}\n'
+    path.write_text(f'{{"ninefold": "walk", "version": 1, "heading": "{unit}"}}\n{first}{line}\n')
+    where = 2 if "place" in line else 3
+    with pytest.raises(WalkError) as caught:
+        read_walk(path)
+    assert f"line {where}: " in str(caught.value)
+    assert f"too large for an angle: {'-' if '-1' in line else ''}1e+300, and angles go up to {limit}" in str(caught.value)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 from ninefold._files import published
 from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError, UnknownName
-from ninefold.mapping import Line, Point, Region
+from ninefold.mapping import Line, Point, Region, Vertex
 from ninefold.mapping.robot.mapper import Mapper
 from ninefold.mapping.robot.walk import Walk, WalkHeader
 from ninefold.mapping.sets import same_map
@@ -361,7 +361,7 @@ class Atlas:
             return self.parse(item), item
         if not isinstance(item, Point | Line | Region):
             raise BadInput(f"a set is a point, line or region of the map, or its text, not {quoted(item)}")
-        same_map(item, Point(self.plane, 0))
+        same_map(item, Point(self.plane, Vertex(0)))
         return item, item.text
 
     def rename(self, old: str, new: str) -> None:

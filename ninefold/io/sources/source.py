@@ -16,6 +16,7 @@ import numpy as np
 
 from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
+from ninefold.immutable import Immutable, freeze, frozen_copy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,8 +52,8 @@ class Crossing:
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
-    """A street network, a floor plan, any set of polylines that meet at vertices. Immutable.
+class Source(Immutable):
+    """A street network, a floor plan, any set of polylines that meet at vertices. Immutable: arrays are copied in.
 
     Attributes
     ----------
@@ -94,6 +95,19 @@ class Source:
     notes: tuple[str, ...] = ()
     projection: Projection | None = None
 
+    def __post_init__(self) -> None:
+        kept: dict[str, Any] = {
+            "points": frozen_copy(np.asarray(self.points, np.float64)),
+            "edges": frozen_copy(np.asarray(self.edges, np.int32)),
+            "paths": tuple(None if path is None else frozen_copy(np.asarray(path, np.float64)) for path in self.paths),
+            "vertex_names": tuple(self.vertex_names),
+            "edge_names": tuple(self.edge_names),
+            "labels": tuple(self.labels),
+            "notes": tuple(self.notes),
+        }
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
+
     @property
     def n_vertices(self) -> int:
         """Number of vertices."""
@@ -116,7 +130,9 @@ class Source:
 
         lines = [self.polyline(e) for e in range(self.n_edges)]
         rows = np.repeat(np.arange(self.n_edges), [len(line) for line in lines])
-        return np.asarray(shapely.linestrings(np.concatenate(lines), indices=rows)) if lines else np.empty(0, object)
+        shapes = np.asarray(shapely.linestrings(np.concatenate(lines), indices=rows)) if lines else np.empty(0, object)
+        freeze(shapes)
+        return shapes
 
     @property
     def streets(self) -> dict[str, tuple[int, ...]]:

@@ -16,6 +16,7 @@ accepted as names; keys not listed here are let pass, and those of the header ar
 from __future__ import annotations
 
 import json
+import sys
 from contextlib import contextmanager
 from itertools import pairwise
 from math import isfinite
@@ -25,7 +26,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from ninefold._files import published, shown
 from ninefold._wording import quoted
 from ninefold.errors import BadInput, WalkError
-from ninefold.mapping.heading import TAU, Heading
+from ninefold.mapping.heading import LARGEST_ANGLE, TAU, Heading
 from ninefold.mapping.names import Names
 from ninefold.mapping.robot.units import unit_of
 from ninefold.mapping.robot.walk import Event, Samples, Visit, Walk, WalkHeader
@@ -51,6 +52,7 @@ WALK_VERSION = 1
 """The version of the format written, and the newest that is read."""
 
 _NUMBER = frozenset((int, float))
+_LARGEST_FLOAT = sys.float_info.max
 _LINE_ENDS = frozenset(("\n", "", "\r\n"))
 
 
@@ -309,7 +311,7 @@ class WalkReader:
             try:
                 samples = Samples((self._yaw(heading),), t)
             except (OverflowError, ValueError):
-                self._fail('"heading" is not finite')
+                self._fail(f'"heading" is {self._no_angle([heading])}')
             self._samples += 1
             return samples
         if "heading" in found:
@@ -326,12 +328,21 @@ class WalkReader:
             self._fail(f'"{key}" is a list of numbers, not {quoted(numbers)}')
         try:
             yaws = tuple(map(self._yaw, numbers))
-            finite = all(map(isfinite, yaws))
+            angles = all(map(isfinite, yaws)) and (not yaws or max(map(abs, yaws)) <= LARGEST_ANGLE)
         except (OverflowError, ValueError):
-            finite = False
-        if not finite:
-            self._fail(f'"{key}" holds a number that is not finite')
+            angles = False
+        if not angles:
+            self._fail(f'"{key}" holds a number that is {self._no_angle(numbers)}')
         return yaws
+
+    def _no_angle(self, numbers: list[Any]) -> str:
+        """Say of the first number that is no angle why it is none."""
+        for number in numbers:
+            if abs(number) > _LARGEST_FLOAT or not isfinite(number):
+                return "not finite"
+            if abs(self._yaw(number)) > LARGEST_ANGLE:
+                return f"too large for an angle: {number:.6g}, and angles go up to {self._unit.angle(LARGEST_ANGLE)}"
+        raise AssertionError("every number is an angle")
 
     def _check_exits(self, headings: tuple[Heading, ...]) -> None:
         yaws = sorted([heading.yaw for heading in headings])

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import degrees, fmod, radians
 from typing import TYPE_CHECKING
 
-from ..heading import wrap
+from ..heading import LARGEST_ANGLE, wrap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -61,6 +61,12 @@ class Unit:
         return "0" if text == "360" else text
 
 
+def _yaw(bearing: float) -> float:
+    """Turn a bearing into yaw; one too large for an angle stays too large for one."""
+    whole = bearing if abs(bearing) > degrees(LARGEST_ANGLE) else fmod(bearing, 360.0)
+    return radians(90.0 - whole)
+
+
 def _bearing(yaw: float) -> float:
     bearing = (90.0 - degrees(yaw)) % 360.0
     return 0.0 if bearing == 360.0 else bearing  # just west of north the remainder rounds up
@@ -69,7 +75,7 @@ def _bearing(yaw: float) -> float:
 _UNITS: dict[HeadingUnit, Unit] = {
     "yaw-rad": Unit(float, float, "", "rad"),
     "yaw-deg": Unit(radians, degrees, "", "deg"),
-    "bearing-deg": Unit(lambda bearing: radians(90.0 - fmod(bearing, 360.0)), _bearing, "bearing ", "deg"),
+    "bearing-deg": Unit(_yaw, _bearing, "bearing ", "deg"),
 }
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 from ninefold._wording import quoted
 from ninefold.errors import WalkError
 
-from ..heading import Heading
+from ..heading import LARGEST_ANGLE, Heading, too_large_an_angle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -151,6 +151,8 @@ class Samples:
             finite = False
         if not finite:
             raise WalkError("samples are finite numbers, in radians")
+        if max(self.yaw) > LARGEST_ANGLE or min(self.yaw) < -LARGEST_ANGLE:
+            raise WalkError(f"a sample of {too_large_an_angle(max(self.yaw, key=abs))}")
 
     @classmethod
     def of(cls, *headings: Heading, t: float | None = None) -> Samples:

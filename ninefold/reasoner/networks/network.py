@@ -31,6 +31,7 @@ from ninefold._wording import counted, quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
+from ninefold.immutable import Immutable, freeze
 
 from .statement import Statement, checked_weight
 
@@ -43,7 +44,7 @@ __all__ = ["Constraints", "Network", "require_network"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Constraints:
+class Constraints(Immutable):
     """The statements of a network, intersected pair by pair.
 
     Attributes
@@ -64,6 +65,9 @@ class Constraints:
     mask: NDArray[Any]
     starts: NDArray[np.int64] = field(repr=False)
     statement: NDArray[np.int64] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        freeze(self.i, self.j, self.mask, self.starts, self.statement)
 
     def __len__(self) -> int:
         return self.i.size

@@ -52,6 +52,7 @@ RCC8_OF_NAME = {
     "contains": "NTPPi",
     "covers": "TPPi",
 }
+_RCC8_WORDS = frozenset(word.lower() for word in RCC8_OF_NAME.values())
 _CONVERSE_NAME = {"contains": "inside", "inside": "contains", "covers": "coveredBy", "coveredBy": "covers"}
 
 
@@ -105,6 +106,11 @@ class Relation:
     ----------
     code
         The packed nine-intersection; see the module's text.
+
+    Raises
+    ------
+    BadInput
+        On ``relation == "inside"``, for any text: a relation is more than its name, so say which of its texts is meant.
 
     Examples
     --------
@@ -165,6 +171,21 @@ class Relation:
     def converse(self) -> Relation:
         """The relation of Y to X."""
         return Relation(converse_code(self.code))
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Relation):
+            return self.code == other.code
+        if isinstance(other, str):
+            matrix = len(other) == 9 and not set(other.upper()) - set("F012")
+            word = "de9im" if matrix else "rcc8" if other.lower() in _RCC8_WORDS else "name"
+            raise BadInput(
+                f"a relation is not a text such as {quoted(other)}; compare one of its texts: "
+                f"relation.{word} == {quoted(other)}"
+            )
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.code)
 
     def _has(self, *cells: int) -> bool:
         return any(self.code & cell for cell in cells)
