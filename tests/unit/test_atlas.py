@@ -86,6 +86,13 @@ def test_events_appended_one_by_one_make_the_same_atlas(tmp_path):
         assert [record.source for record in atlas.provenance] == ["robot 7"]
 
 
+def test_what_is_no_event_is_refused_and_not_stored(tmp_path):
+    with Atlas.create(tmp_path / "a.atlas") as atlas:
+        with pytest.raises(WalkError, match="an event is a Visit or Samples, not 'hall'"):
+            atlas.append("hall")
+        assert atlas.n_events == 0
+
+
 def test_a_log_ahead_of_the_stored_map_is_replayed(triangle):
     atlas = Atlas.open(triangle)
     atlas.append(Samples.of(Heading.from_bearing(180)))
