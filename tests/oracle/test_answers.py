@@ -75,27 +75,27 @@ def named(scenario):
 
 
 @EVERY
-def test_recorded_closure_is_closure_and_its_proofs_hold(calculus):
+def test_recorded_closure_is_closure_and_its_derivations_hold(calculus):
     for net, reference, constraints in random_networks(calculus, 1, 25, (3, 7)):
         n = net.n_entities
         closure = RecordedClosure(calculus, n)
         closed = all(closure.state(i, j, m, s) for s, (i, j, m) in enumerate(constraints)) and closure.close()
         expected = reference.closure(n, reference.labels(n, constraints))
         assert closed == (expected is not None)
-        proofs = [closure.refutation()] if not closed else []
+        derivations = [closure.refutation()] if not closed else []
         if closed:
             for (i, j), names in expected.items():
                 assert reference.names(closure.relation(i, j)) == names
-                proofs.append(closure.proof(i, j, closure.relation(i, j)))
-                assert proofs[-1].conclusion.mask & ~closure.relation(i, j) == 0
-        for proof in proofs:
-            replay(calculus, constraints, proof)
+                derivations.append(closure.derivation(i, j, closure.relation(i, j)))
+                assert derivations[-1].conclusion.mask & ~closure.relation(i, j) == 0
+        for derivation in derivations:
+            replay(calculus, constraints, derivation)
 
 
-def replay(calculus, constraints, proof):
+def replay(calculus, constraints, derivation):
     """Every fact follows from earlier ones, with the reference's composition."""
     reference = REFERENCES[calculus.name]
-    facts = proof.facts
+    facts = derivation.facts
 
     def seen_from(k, i, j):
         if k < 0:
@@ -194,9 +194,9 @@ def test_refutations_cover_every_case():
 
 
 def confirm(n, constraints, found, first):
-    if found.proof is not None:
-        assert found.proof.conclusion.mask == 0
-        replay(RCC8, constraints, found.proof)
+    if found.derivation is not None:
+        assert found.derivation.conclusion.mask == 0
+        replay(RCC8, constraints, found.derivation)
         return
     label = 0
     for part, case in found.cases:

@@ -285,12 +285,12 @@ class TestScenario:
 
 
 class TestClosure:
-    def test_proofs_of_what_was_always_known(self):
+    def test_derivations_of_what_was_always_known(self):
         closure = RecordedClosure(RCC8, 3)
         assert closure.close()
-        assert closure.proof(0, 1, RCC8.universal).sources == frozenset()
+        assert closure.derivation(0, 1, RCC8.universal).sources == frozenset()
         with pytest.raises(BadInput, match="does not show"):
-            closure.proof(0, 1, RCC8.relation("DC"))
+            closure.derivation(0, 1, RCC8.relation("DC"))
         with pytest.raises(BadInput, match="nothing to refute"):
             closure.refutation()
 
@@ -310,4 +310,4 @@ class TestClosure:
             for j in range(i + 1, n):
                 assert closure.relation(i, j) & ~parts == 0
                 assert closure.relation(j, i) == RCC8.converse_of(closure.relation(i, j))
-        assert closure.proof(0, n - 1, parts).sources == set(range(n - 1))
+        assert closure.derivation(0, n - 1, parts).sources == set(range(n - 1))

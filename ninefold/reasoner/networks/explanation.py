@@ -28,7 +28,7 @@ from .words import phrase
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .derivation import Fact, Proof
+    from .derivation import Derivation, Fact
     from .network import Network, Statement
     from .refutation import Refutation
 
@@ -127,12 +127,12 @@ class _Writer:
     def refutation(self, refutation: Refutation) -> None:
         """Write a refutation under the present assumptions."""
         indent = "  " * len(self._assumed)
-        if refutation.proof is not None:
-            self._proof(refutation.proof, indent)
+        if refutation.derivation is not None:
+            self._derivation(refutation.derivation, indent)
             return
         i, j = refutation.pair or (0, 0)
         if refutation.ground is not None and len(refutation.ground.facts) > 1:
-            self._proof(refutation.ground, indent)
+            self._derivation(refutation.ground, indent)
         left = self._phrase(i, j, refutation.label)
         self.lines.append(f"{indent}{len(refutation.cases)} cases, since {left}:")
         for number, (part, case) in enumerate(refutation.cases):
@@ -141,9 +141,9 @@ class _Writer:
             self.refutation(case)
             self._assumed.pop()
 
-    def _proof(self, proof: Proof, indent: str) -> None:
+    def _derivation(self, derivation: Derivation, indent: str) -> None:
         """Write a proof, a line a derived fact; the last line ends in the contradiction, if it is one."""
-        facts = proof.facts
+        facts = derivation.facts
         shown = {k: line for k, fact in enumerate(facts) if (line := self._derived(fact, facts))}
         if not shown:
             # statements about one pair that leave nothing of it
