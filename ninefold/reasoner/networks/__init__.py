@@ -2,6 +2,7 @@
 
 =================  ==============================================================================================
 `network`          `Network`: statements over one calculus, and their intersection pair by pair
+`deciding`         the decision and what shows it; `consistency`, `conflicts` and `enumeration` call it
 `consistency`      `check`: consistent with a scenario, inconsistent, or unknown
 `scenario`         `Scenario`: one base relation a pair
 `enumeration`      every scenario, and how many

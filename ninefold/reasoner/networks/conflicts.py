@@ -2,7 +2,7 @@
 
 Where closure refutes a network, its record says which statements were used, often a handful of thousands; so does a
 proof by cases where that is short. What is left is then shrunk by leaving statements out, first in blocks and in the end
-one by one, every time asking closure and, where closure finds nothing, `check`. The last round proves that each
+one by one, every time asking closure and, where closure finds nothing, `decide`. The last round proves that each
 statement is necessary.
 
 Examples
@@ -29,7 +29,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ._sparse_trace import pairs_behind_refutation
-from .consistency import Consistent, Inconsistent, check
+from .deciding import decide
 from .derivation import RecordedClosure
 from .refutation import refute
 
@@ -96,7 +96,7 @@ def conflict(net: Network, *, seed: int = 0, budget: float | None = None) -> Con
     Parameters
     ----------
     seed
-        For ``check``; the same seed gives the same conflict.
+        For the search; the same seed gives the same conflict.
     budget
         Seconds after which statements are no longer left out; what is left then is a conflict, perhaps not minimal.
         Whether there is a conflict at all is decided without regard to it.
@@ -157,7 +157,7 @@ class Shrinker:
         kept = sorted(indices)
         used = self._used(kept)
         if used is None:
-            if not known and not isinstance(check(part_of(self._net, kept), seed=self._seed), Inconsistent):
+            if not known and decide(part_of(self._net, kept), seed=self._seed).consistent is not False:
                 return None
             used = self._used_by_cases(kept)
         minimal = True
@@ -197,10 +197,10 @@ class Shrinker:
         if left is not None and left <= 0:
             self._late = True
             return None
-        # most often the rest is consistent, which check sees faster on few statements than a closure over all pairs
-        verdict = check(part_of(self._net, rest), budget=left, seed=self._seed)
-        if not isinstance(verdict, Inconsistent):
-            self._late = not isinstance(verdict, Consistent)
+        # most often the rest is consistent, which the search sees faster on few statements than a closure over all pairs
+        consistent = decide(part_of(self._net, rest), budget=left, seed=self._seed).consistent
+        if consistent is not False:
+            self._late = not consistent
             return None
         return self._used(rest) or self._used_by_cases(rest)
 

@@ -1,7 +1,7 @@
 """Every scenario of a network, one after another, and how many there are.
 
 Pairs get base relations one at a time, with closure after each. Pairs whose labels closure cannot be trusted with come
-first, and `check` confirms every step among them; from then on no step leads into a dead end, so that the next scenario
+first, and `decide` confirms every step among them; from then on no step leads into a dead end, so that the next scenario
 is never far.
 
 Examples
@@ -27,7 +27,7 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
-from .consistency import Inconsistent, check
+from .deciding import decide
 from .derivation import RecordedClosure
 from .refutation import decides
 from .scenario import Scenario
@@ -108,14 +108,14 @@ def scenarios(net: Network, *, seed: int = 0) -> Iterator[Scenario]:
     Parameters
     ----------
     seed
-        For ``check``. The order of the scenarios does not depend on it.
+        For the search. The order of the scenarios does not depend on it.
 
     Complexity
     ----------
     Between two scenarios O(n^2) closures, and as many checks where labels are outside a tractable class.
     """
     closure = closed(net)
-    if closure is not None and not isinstance(check(net, seed=seed), Inconsistent):
+    if closure is not None and decide(net, seed=seed).consistent is not False:
         yield from _Enumerator(net, closure, seed).run()
 
 
@@ -190,4 +190,4 @@ class _Enumerator:
             (i, j, closure.relation(i, j)) for i, j in self._pairs if closure.relation(i, j) != calculus.universal
         ]  # fmt: skip
         net = Network.from_constraints(calculus, self._net.n_entities, present)
-        return not isinstance(check(net, seed=self._seed), Inconsistent)
+        return decide(net, seed=self._seed).consistent is not False
