@@ -254,9 +254,7 @@ def test_narrowing_keeps_books_and_is_taken_back(name, chordal):
                     wanted = -1 if s.marks[edge, c.ROOT] & ~mask == 0 else first
                     assert made_true_at(s.edges, s.trail, edge, mask) == wanted
         for level in range(int(s.reg[c.LEVEL]) - 1, -1, -1):
-            backjump(
-                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, s.reg, s.converse, s.reg[c.N_BASES], level
-            )  # fmt: skip
+            backjump(s, level)
             check_state(run)
         assert (s.dom[::2] == s.marks[:, c.ROOT]).all()
 
@@ -296,7 +294,7 @@ def test_explanations_hold_before_and_imply(name, chordal):
                 continue
             edge, old, new = (int(s.trail[t, k]) for k in (c.EDGE, c.OLD, c.NEW))
             wanted = (new | int(rng.integers(full + 1))) & (full ^ (1 << int(rng.choice(bits(old & ~new)))))
-            n = explain(s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, full, t, wanted, s.out)
+            n = explain(s, t, wanted)
             premise = {}
             for e, mask in s.out[:n].tolist():
                 assert relation_before(s.edges, s.marks, s.trail, s.converse, 2 * e, t) & ~mask == 0
@@ -308,7 +306,7 @@ def test_explanations_hold_before_and_imply(name, chordal):
             looked += 1
         if s.reg[c.TROUBLE] == c.TRIANGLE_TROUBLE:
             e, f, g = (int(s.reg[k]) for k in (c.TROUBLE_A, c.TROUBLE_F, c.TROUBLE_G))
-            n = explain_triangle_conflict(s.dom, s.edges, s.marks, s.converse, s.compose, full, e, f, g, s.out)
+            n = explain_triangle_conflict(s, e, f, g)
             premise = {}
             for x, mask in s.out[:n].tolist():
                 assert s.dom[2 * x] & ~mask == 0
@@ -330,19 +328,13 @@ def meet(s, premise, arc):
 @pytest.mark.parametrize("chordal", [False, True])
 def test_analysis_learns_a_clause_that_asserts(chordal):
     for run in conflicts("rcc8", chordal, 14, 8):
-        s, reg = run.state, run.state.reg
-        n = analyse(
-            s.dom, s.edges, s.marks, s.trail, s.levels, reg, s.arena, s.place, s.converse, s.compose, reg[c.FULL],
-            s.activity, s.recent, s.held, s.out, s.learnt,
-        )  # fmt: skip
+        s = run.state
+        n = analyse(s)
         depth = [int(s.trail[s.marks[e, c.AT], c.DEPTH]) for e in s.learnt[:n, 0]]
         assert max(depth) == depth[0]
         assert depth.count(depth[0]) == 1
         before = set(s.learnt[:n, 0].tolist())
-        m, level, lbd = minimise(
-            s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, reg[c.FULL], s.stamp, 2, n,
-            s.out, s.stack, s.learnt,
-        )  # fmt: skip
+        m, level, lbd = minimise(s, 2, n)
         kept = s.learnt[:m].tolist()
         assert {e for e, _ in kept} <= before
         assert (s.marks[:, c.NEED] == -1).all()
@@ -352,9 +344,7 @@ def test_analysis_learns_a_clause_that_asserts(chordal):
         assert level == (
             0 if m == 1 else max(d for e, d in zip(s.learnt[:m, 0], depths(s, kept), strict=True) if e != kept[0][0])
         )
-        backjump(
-            s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[c.N_BASES], level
-        )  # fmt: skip
+        backjump(s, level)
         first, rest = kept[0], kept[1:]
         assert all(s.dom[2 * e] & mask == 0 for e, mask in rest)  # false still
         assert s.dom[2 * first[0]] & first[1]  # and the first one is not, and says something

@@ -184,6 +184,6 @@ class Engine:
         s.edges[:, c.WATCH] = -1
         rewatch = self._form(attach)
         for clause in range(len(kept)):
-            rewatch(s.edges, s.arena, s.place, s.watch, clause)
+            rewatch(s, clause)
         self._reductions += 1
         reg[c.REDUCE_AT] = reg[c.CONFLICTS] + _REDUCE_FIRST + _REDUCE_STEP * self._reductions
