@@ -1,4 +1,4 @@
-"""Relations in words, for derivations that people read.
+"""Relations and statements in words, for people to read.
 
 Examples
 --------
@@ -14,9 +14,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ninefold.encodings.calculus import Calculus
 
-__all__ = ["phrase"]
+    from .network import Statement
+
+__all__ = ["counted", "phrase", "spoken", "told"]
+
+_TOLD = 3
+"""Statements that a repr tells."""
 
 _VERBS = {
     "DC": ("disjoint", "not disjoint"),
@@ -50,6 +57,31 @@ def phrase(calculus: Calculus, a: str, mask: int, b: str) -> str:
     if excluded.bit_count() < mask.bit_count() and excluded.bit_count() <= 3:
         return f"{a} none of {', '.join(_VERBS.get(n, (n, n))[0] for n in calculus.names(excluded))} {b}"
     return f"{a} {_either([word for word, _ in words])} {b}"
+
+
+def spoken(calculus: Calculus, statement: Statement) -> str:
+    """Return a statement in words, with its label if it has one: "kitchen inside house (floor plan)"."""
+    label = f" ({statement.label})" if statement.label else ""
+    return f"{phrase(calculus, statement.a, statement.mask, statement.b)}{label}"
+
+
+def told(calculus: Calculus, statements: Sequence[Statement]) -> str:
+    """Return the first few statements in words, and how many more there are: what fits into a repr."""
+    shown = [spoken(calculus, s) for s in statements[:_TOLD]]
+    if len(statements) > _TOLD:
+        shown.append(f"{len(statements) - _TOLD} more")
+    return "; ".join(shown)
+
+
+def counted(n: int, noun: str) -> str:
+    """Return a number and a noun that agree with each other.
+
+    Examples
+    --------
+    >>> counted(1, "statement"), counted(1200, "case")
+    ('1 statement', '1,200 cases')
+    """
+    return f"{n:,} {noun}{'' if n == 1 else 's'}"
 
 
 def _either(words: list[str]) -> str:
