@@ -66,6 +66,15 @@ class _Clauses(NamedTuple):
         source = np.repeat(before[keep] - (stop - size), size) + np.arange(int(size.sum()))
         return _Clauses(self.literals[source], self.size[keep], self.lbd[keep], self.sets[keep])
 
+    def with_more(self, more: _Clauses) -> _Clauses:
+        """Return these clauses and then those."""
+        return _Clauses(
+            np.concatenate([self.literals, more.literals]),
+            np.concatenate([self.size, more.size]),
+            np.concatenate([self.lbd, more.lbd]),
+            np.concatenate([self.sets, more.sets]),
+        )
+
     def best(self, most: int) -> _Clauses:
         """Return the clauses of the fewest levels and literals, the last learned among equals, in their old order."""
         rank = np.lexsort((-np.arange(len(self.size)), self.size, self.lbd))
@@ -175,7 +184,8 @@ class CoreSearch:
 
     @staticmethod
     def _trace_bytes(trace: t.Trace) -> int:
-        return 64 * trace.sets.shape[1]
+        words: int = trace.sets.shape[1]
+        return 64 * words
 
     def _decide(self, part: NDArray[np.int64], units: NDArray[np.int32]) -> bool:
         """Say whether a part is refuted."""
@@ -331,8 +341,7 @@ class CoreSearch:
         ones = np.ones(len(units), dtype=np.int32)
         new = _Clauses(units[:, :2], ones, ones, trace.sets[units[:, 2]])
         old = self._clauses.chosen(np.flatnonzero(self._clauses.size == 1))
-        every = [np.concatenate(parts) for parts in zip(old, new, learned, strict=True)]
-        self._clauses = _Clauses(*every).best(_HANDED_ON)
+        self._clauses = old.with_more(new).with_more(learned).best(_HANDED_ON)
         self._activity = state.activity.copy()
         self.work += int(state.reg[c.TICKS])
         self.conflicts += int(state.reg[c.CONFLICTS])
