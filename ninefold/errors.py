@@ -28,6 +28,7 @@ __all__ = [
     "NotACycle",
     "NotPlane",
     "TooLarge",
+    "Undecided",
     "UnknownName",
     "WalkError",
 ]
@@ -117,6 +118,22 @@ class AtlasError(NinefoldError, OSError):
 
 class TooLarge(NinefoldError, MemoryError):
     """A request that cannot fit; the message says how much it would take."""
+
+
+class Undecided(NinefoldError, RuntimeError):
+    """Scenarios or a repair were asked for, and whether the network is consistent is not known.
+
+    ``check`` answers `Unknown` there; an iterator of scenarios has no such answer to give.
+
+    Attributes
+    ----------
+    kind
+        ``"time"`` where a budget was spent, ``"theory"`` where nobody has shown how to decide the calculus.
+    """
+
+    def __init__(self, message: str, *, kind: str) -> None:
+        super().__init__(message)
+        self.kind = kind
 
 
 class MissingExtra(NinefoldError, ImportError):

@@ -68,7 +68,14 @@ def check(
     with progress(f"deciding {net}"):
         verdict = decide(network, budget=budget, method=method, proof=proof is not None, seed=seed)
     seconds = time.perf_counter() - begin
-    report: dict[str, Any] = {"verdict": "unknown", "seconds": round(seconds, 6), "scenario": None, "conflict": None}
+    compiling = verdict.decision.compiling
+    report: dict[str, Any] = {
+        "verdict": "unknown",
+        "seconds": round(seconds, 6),
+        "compiling": round(compiling, 6),
+        "scenario": None,
+        "conflict": None,
+    }
     text = ""
     code = SPENT
     if isinstance(verdict, Consistent):
@@ -83,7 +90,7 @@ def check(
     elif isinstance(verdict, Inconsistent):
         report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
         if not no_conflict:
-            left = None if budget is None else max(budget - seconds, 0.0)
+            left = None if budget is None else max(budget - (seconds - compiling), 0.0)
             why = _conflict(network, seed, left)
             report["conflict"] = why[0]
             text = f"{text}\n{why[1]}"
@@ -92,7 +99,7 @@ def check(
                 file.write_text(verdict.proof.to_text(), encoding="ascii")
             report["proof"] = str(proof)
     else:
-        report["reason"] = verdict.reason
+        report["reason"], report["kind"] = verdict.reason, verdict.kind
         text = f"unknown: {verdict.reason}"
     if draw is not None and code != YES:
         note("nothing was drawn: only a consistent network has a drawing")
@@ -146,6 +153,7 @@ def infer(
 ) -> int:
     """Tell which relations are feasible between two entities."""
     from ninefold.reasoner.networks.conflicts import Conflict
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.explanation import explain
     from ninefold.reasoner.networks.inference import infer as inference
 
@@ -154,10 +162,14 @@ def infer(
         found = inference(network, a, b, seed=seed, budget=budget)
     names = network.calculus.names
     report: dict[str, Any] = {"a": found.a, "b": found.b, "relations": list(found.relations)}
-    lines = [f"{found.a}  {' '.join(found.relations) or 'nothing is possible: the network is inconsistent'}  {found.b}"]
-    if found.unknown:
-        report["unknown"] = list(names(found.unknown))
-        lines.append(f"not decided in {budget} s: {' '.join(report['unknown'])}")
+    feasible = " ".join(found.relations)
+    if found.consistent is False:
+        feasible = "nothing is possible: the network is inconsistent"
+    lines = [f"{found.a}  {feasible}  {found.b}"] if feasible else []
+    if found.kind is not None:
+        report["unknown"], report["kind"] = list(found.undecided), found.kind
+        report["reason"] = why_unknown(network.calculus, found.kind, budget)
+        lines.append(f"not decided between {found.a} and {found.b}: {' '.join(found.undecided)} ({report['reason']})")
     if why:
         report["excluded"] = {}
         for relation in names(network.calculus.universal & ~found.mask & ~found.unknown):
@@ -211,13 +223,19 @@ def repair(
     net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
 ) -> int:
     """Find the cheapest statements to drop so that the rest is consistent."""
+    from ninefold.errors import Undecided
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.repairs import repair as cheapest
 
     network = _read(net, calculus)
-    with progress(f"repairing {net}"):
-        found = cheapest(network, seed=seed, budget=budget)
+    reason = why_unknown(network.calculus, "time", budget)
+    try:
+        with progress(f"repairing {net}"):
+            found = cheapest(network, seed=seed, budget=budget)
+    except Undecided as error:
+        found, reason = None, str(error)
     if found is None:
-        _print({"drop": None, "cost": None, "optimal": False}, f"unknown: {budget} s were not enough", as_json=as_json)
+        _print({"drop": None, "cost": None, "optimal": False, "reason": reason}, f"unknown: {reason}", as_json=as_json)
         return SPENT
     if found.conflict is not None:
         report: dict[str, Any] = {"drop": None, "cost": None, "optimal": True, "conflict": _stated(network, found.conflict)}
@@ -244,11 +262,17 @@ def scenarios(
     """List the scenarios of a network, and say how many there are."""
     from itertools import islice
 
+    from ninefold.errors import Undecided
     from ninefold.reasoner.networks.enumeration import scenarios as every
 
     network = _read(net, calculus)
-    with progress(f"listing the scenarios of {net}"):
-        found = list(islice(every(network, seed=seed), limit + 1))
+    try:
+        with progress(f"listing the scenarios of {net}"):
+            found = list(islice(every(network, seed=seed), limit + 1))
+    except Undecided as error:
+        report = {"count": 0, "exact": False, "scenarios": [], "reason": str(error)}
+        _print(report, f"unknown: {error}", as_json=as_json)
+        return SPENT
     exact, found = len(found) <= limit, found[:limit]
     if as_json:
         print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})

@@ -35,8 +35,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ninefold.encodings.model import RCC5_MODEL, RCC8_MODEL, matches
-from ninefold.encodings.rcc8 import RCC5, RCC8
+from ninefold.encodings.model import matches
+from ninefold.encodings.rcc8 import RCC8
+from ninefold.encodings.theory import theory_of
 from ninefold.errors import BadInput, NinefoldError
 from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
 
@@ -80,11 +81,12 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     ----------
     With k islands and d demands O(d k n) to lay the islands, and n^2 / 2 calls of GEOS.
     """
-    if scenario.calculus not in (RCC8, RCC5):
+    known = theory_of(scenario.calculus).model
+    if known is None:
         raise BadInput(f"only regions can be drawn: scenarios of rcc8 and rcc5, not of {scenario.calculus.name}")
     if not scenario.is_closed():
         raise BadInput("some triangle of the scenario contradicts the composition table, so nothing can be drawn")
-    relations = _Relations(scenario)
+    relations = _Relations(scenario, known.value)
     states = _Islands(relations).lay()
     places, radii = _places(states, relations.radius), relations.radius
     shapes = {
@@ -97,11 +99,10 @@ def realize(scenario: Scenario) -> dict[str, Any]:
 class _Relations:
     """A scenario as matrices, x by y."""
 
-    def __init__(self, scenario: Scenario) -> None:
-        names = scenario.calculus.bases
+    def __init__(self, scenario: Scenario, model: tuple[BaseMeaning, ...]) -> None:
         self.n = len(scenario.entities)
         self.bases = scenario.bases
-        self.model: tuple[BaseMeaning, ...] = RCC8_MODEL if len(names) == len(RCC8_MODEL) else RCC5_MODEL
+        self.model = model
         self.passes_half = self._where("TPP", "PP", "EQ")
         self.passes_both = self._where("NTPP")
         self.no_point = self._where("DC")

@@ -6,7 +6,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ninefold.encodings import ALLEN, H8, RCC8
+from ninefold.encodings import ALLEN, H8
 from ninefold.reasoner.engine import columns as c
 from ninefold.reasoner.engine.analyse import analyse, minimise
 from ninefold.reasoner.engine.decide import decay, luby, next_split
@@ -17,7 +17,7 @@ from ninefold.reasoner.engine.queue import clear_queue, enqueue, open_queue, tak
 from ninefold.reasoner.engine.search import learn, propagate, recheck, settle_root, split
 from ninefold.reasoner.engine.state import node_table
 from ninefold.reasoner.engine.sweep import losing_partners
-from ninefold.reasoner.engine.tables import Tables, atomic_subclass, compose_masks
+from ninefold.reasoner.engine.tables import atomic_subclass, compose_masks
 from ninefold.reasoner.engine.words import bit_count, lowest_bit
 from tests.oracle.engine_reference import (
     CALCULI,
@@ -71,14 +71,6 @@ def test_tables(name):
                 (1 << 64) - 1 if through >> k & 1 else 0 for k in range(b)
             ]
     assert (tables.compose_bases() == calculus.base_composition).all()
-
-
-def test_atomic_tables_settle_only_base_relations():
-    tables = Tables.of(RCC8, H8.member, atomic=True)
-    for r in range(1, 256):
-        assert (tables.hull[r] & ~255 == 0) == (r.bit_count() == 1)
-        assert int(tables.split[r]).bit_count() == 1
-        assert tables.split[r] & ~r == 0
 
 
 def test_queue_takes_the_smallest_first_and_the_oldest_among_equals():

@@ -81,6 +81,26 @@ class Engine:
         """Return the (2E,) relations of the arcs as they are now (a view)."""
         return self.state.dom
 
+    def labels(self) -> NDArray[Any]:
+        """Return the relations of all pairs of a dense frame as they are now, an (n, n) array of masks."""
+        n = self.frame.n
+        labels = np.full((n, n), self.tables.identity, dtype=np.int16)
+        tail, head = self.frame.ends()
+        labels[tail, head], labels[head, tail] = self.state.dom[::2], self.state.dom[1::2]
+        return labels
+
+    def state_more(self, i: int, j: int, mask: int) -> bool:
+        """Intersect one pair of entities with a relation, before any search; return False if nothing is left of it.
+
+        The next `close` goes on from there.
+        """
+        arcs = self.frame.arcs(np.array([i]), np.array([j]))
+        left = self.state.dom[arcs] & np.int16(mask)
+        if (left != self.state.dom[arcs]).any() and left.all():
+            self.state.reg[c.KEEP] = 0  # level 0 is never taken back
+            self._form(state_labels)(self.state, arcs, left)
+        return bool(left.all())
+
     def close(self, deadline: float | None = None) -> bool | None:
         """Close the stated network; return False if it is inconsistent, None past the deadline, else True.
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from ninefold.errors import BadInput
 
-from .deciding import decide
+from .deciding import decide, why_unknown
 from .proofs import Proof, digest_of
 
 if TYPE_CHECKING:
@@ -22,11 +22,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ninefold.encodings.calculus import Calculus
-
     from ..engine.graph import Frame
     from .conflicts import Conflict
-    from .deciding import Why
+    from .deciding import Decision, Kind
     from .network import Network
     from .scenario import Scenario
 
@@ -43,19 +41,23 @@ class Consistent:
         The network, as it was decided.
     seed
         Of the search.
+    decision
+        What was decided and what shows it.
     """
 
     network: Network = field(repr=False)
     seed: int = 0
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
     @property
     def scenario(self) -> Scenario:
-        """One base relation for every pair of entities, all at once possible; made anew at each request, O(n^3)."""
-        from .enumeration import some_scenario
+        """One base relation for every pair of entities, all at once possible.
 
-        found = some_scenario(self.network, seed=self.seed)
-        if found is None:
-            raise BadInput("the network was changed since it was decided, and is inconsistent now")
+        Made at the first request and kept. No search is needed: the labels that the decision found are closed once more,
+        or a SAT solver's model is read (see `ninefold.reasoner.networks.completion`).
+        """
+        found = self.decision.scenario
+        assert found is not None  # noqa: S101 - a consistent decision has a witness
         return found
 
 
@@ -71,11 +73,14 @@ class Inconsistent:
         Of the search.
     proof
         What `ninefold.reasoner.networks.proofs` confirms, if it was asked for.
+    decision
+        What was decided; with a proof also the frame and the learned clauses.
     """
 
     network: Network = field(repr=False)
     seed: int = 0
     proof: Proof | None = field(default=None, repr=False)
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
     def conflict(self) -> Conflict:
         """Return a minimal set of statements that cannot hold together; see `ninefold.reasoner.networks.conflicts`."""
@@ -97,10 +102,17 @@ class Unknown:
         The network.
     reason
         Why, in words.
+    kind
+        ``"time"``: the budget was spent, and a larger one may decide it; ``"theory"``: nobody has shown that closure
+        decides networks of this calculus, and no budget helps.
+    decision
+        What was found until then.
     """
 
     network: Network = field(repr=False)
-    reason: str = ""
+    reason: str
+    kind: Kind
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
 
 Verdict: TypeAlias = Consistent | Inconsistent | Unknown
@@ -114,7 +126,8 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     net
         The network; a copy goes into the verdict.
     budget
-        Seconds after which the answer is `Unknown`; None for no limit.
+        Seconds after which the answer is `Unknown`; None for no limit. Compiling the engine, once a machine, or loading it,
+        once a process, is not counted; ``verdict.decision.compiling`` says how long that took.
     method
         ``"auto"``, or an encoding and a SAT solver, such as ``"support:glucose42"`` (the solver may be left out).
     proof
@@ -149,16 +162,12 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     decided = net.copy()
     decision = decide(decided, budget=budget, method=method, proof=proof, seed=seed)
     if decision.consistent:
-        return Consistent(decided, seed)
+        return Consistent(decided, seed, decision=decision)
     if decision.consistent is None:
-        return Unknown(decided, _in_words(decided.calculus, budget, decision.why))
-    return Inconsistent(decided, seed, None if decision.log is None else _proof(decided, decision.frame, decision.log))
-
-
-def _in_words(calculus: Calculus, budget: float | None, why: Why | None) -> str:
-    if why == "theory":
-        return f"closure finds no conflict, but nobody has shown that closure decides {calculus.name!r}"
-    return f"{budget} s were not enough"
+        kind = decision.kind or "time"
+        return Unknown(decided, why_unknown(decided.calculus, kind, budget), kind, decision=decision)
+    proved = None if decision.log is None else _proof(decided, decision.frame, decision.log)
+    return Inconsistent(decided, seed, proved, decision=decision)
 
 
 def _proof(net: Network, frame: Frame | None, log: Sequence[NDArray[np.int32]]) -> Proof:

@@ -17,17 +17,20 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ninefold.encodings import ALLEN, H8, POINT, RCC5, RCC8, encode, open_solver
-from ninefold.errors import BadInput
+from ninefold.encodings import encode, open_solver, theory_of
+from ninefold.errors import BadInput, Undecided
 
 from ..engine.engine import Engine
 from ..engine.graph import dense_frame, triangulated_frame
 from ..engine.tables import Tables
+from .completion import refined
+from .scenario import Scenario
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,15 +40,41 @@ if TYPE_CHECKING:
     from ..engine.graph import Frame
     from .network import Network
 
-__all__ = ["Decision", "Why", "decide"]
+__all__ = ["Decision", "Kind", "Witness", "decide", "undecided", "why_unknown"]
 
 DEFAULT_SOLVER = "cadical195"
 
-Why = Literal["time", "theory"]
+Kind = Literal["time", "theory"]
 """Why a network was not decided: the budget ended first, or nobody has shown that closure decides its calculus."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """Labels that have a scenario, in a class of relations in which closure decides, and so finds one without search.
+
+    Attributes
+    ----------
+    calculus, entities
+        Of the network.
+    frame
+        Pairs on which closure decides: all of them, or a chordal completion.
+    arcs, masks
+        (P,) arcs of the frame and their labels; each stated label holds the one here.
+    """
+
+    calculus: Calculus
+    entities: tuple[str, ...]
+    frame: Frame
+    arcs: NDArray[np.int64]
+    masks: NDArray[np.int16]
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """One base relation for every pair; made at the first request by one more closure."""
+        return Scenario.from_completion(refined(self.calculus, self.frame, self.arcs, self.masks), self.entities)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Decision:
     """What was decided of a network, and what shows it.
 
@@ -53,19 +82,30 @@ class Decision:
     ----------
     consistent
         Whether the network has a scenario; None where that was not decided.
-    why
+    kind
         Then the reason, else None.
+    witness
+        Of a consistent network, what its scenario is read off; else None.
     frame
         The pairs that the engine kept, or None where it was not asked.
     log
         The learned clauses in their order, each an (L, 2) int32 array of (edge of the frame, mask); None where nobody
         asked for a proof.
+    compiling
+        Seconds spent on compiling kernels or loading compiled ones. No budget pays for them.
     """
 
     consistent: bool | None
-    why: Why | None = None
+    kind: Kind | None = None
+    witness: Witness | None = field(default=None, repr=False)
     frame: Frame | None = field(default=None, repr=False)
     log: tuple[NDArray[np.int32], ...] | None = field(default=None, repr=False)
+    compiling: float = 0.0
+
+    @property
+    def scenario(self) -> Scenario | None:
+        """A scenario of a consistent network, made without search; None where none is known."""
+        return None if self.witness is None else self.witness.scenario
 
 
 def decide(
@@ -79,63 +119,96 @@ def decide(
         For a budget that is not positive, or a method that does not exist.
     TooLarge
         For a calculus or a network that does not fit the engine's tables.
+
+    Notes
+    -----
+    A scenario costs nothing before it is asked for: the decision keeps labels, and `Witness.scenario` closes them.
     """
     if budget is not None and not budget > 0:
         raise BadInput(f"a budget is a positive number of seconds, not {budget!r}")
     if proof and method != "auto":
         raise BadInput(f"only method 'auto' keeps a proof, not {method!r}")
     deadline = None if budget is None or math.isinf(budget) else time.perf_counter() + budget
-    constraints = net.constraints()
-    log: list[NDArray[np.int32]] | None = [] if proof else None
-    frame: Frame | None = None
-    if (constraints.mask == 0).any():
-        return Decision(consistent=False, log=None if log is None else ())
-    if net.n_entities < 2 or not constraints.mask.size:
-        return Decision(consistent=True)
-    decided = _closure_decides(net.calculus)
-    if method == "auto":
-        frame = _frame(net, sparse=decided)
-        found = _search(net, frame, deadline, seed, log)
+    stated, theory = net.constraints(), theory_of(net.calculus)
+    if (stated.mask == 0).any():
+        return Decision(consistent=False, log=() if proof else None)
+    if net.n_entities < 2 or not stated.mask.size:
+        found = Decision(consistent=True, witness=_witness(net, stated.i, stated.j, stated.mask), log=() if proof else None)
+    elif method == "auto":
+        found = _by_search(net, deadline, seed, proof=proof)
     else:
         found = _by_sat(net, method, deadline)
-    why: Why | None = None
-    if found is None:
-        why = "time"
-    elif found and not decided:
-        found, why = None, "theory"
-    return Decision(found, why, frame, None if log is None else tuple(log))
+    if found.consistent and not theory.closure_decides:
+        return replace(found, consistent=None, kind="theory", witness=None)
+    return found
 
 
-def _closure_decides(calculus: Calculus) -> bool:
-    """Say whether closure decides networks of one base relation a pair, on chordal completions too."""
-    return calculus in (RCC8, RCC5, POINT, ALLEN)
+def undecided(calculus: Calculus) -> Undecided:
+    """Return the error for a network of a calculus that closure does not refute and of which nothing more is known."""
+    why = why_unknown(calculus, "theory", None)
+    return Undecided(f"it is not known whether the network is consistent: {why}", kind="theory")
 
 
-def _search(
-    net: Network, frame: Frame, deadline: float | None, seed: int, log: list[NDArray[np.int32]] | None
-) -> bool | None:
-    stated = net.constraints()
-    tables = Tables.of(net.calculus, H8.member if net.calculus == RCC8 else None)
-    masks = stated.mask.astype(np.int16)
-    engine = Engine(tables, frame, frame.arcs(stated.i, stated.j), masks, seed=seed, log=log)
-    closed = engine.close(deadline)
-    if not closed:
-        return closed
-    return engine.search(deadline)
+def why_unknown(calculus: Calculus, kind: Kind, budget: float | None) -> str:
+    """Say why a network of a calculus was not decided.
+
+    Examples
+    --------
+    >>> from ninefold.encodings import RCC8
+    >>> why_unknown(RCC8, "time", 2.0)
+    '2.0 s were not enough'
+    """
+    match kind:
+        case "theory":
+            return f"closure finds no conflict, but nobody has shown that closure decides {calculus.name!r}"
+        case "time":
+            return f"{budget} s were not enough"
 
 
-def _frame(net: Network, *, sparse: bool) -> Frame:
-    """Keep a chordal completion where it has less than half of all pairs, else all."""
-    n, stated = net.n_entities, net.constraints()
-    frame = triangulated_frame(n, stated.i, stated.j, most=n * (n - 1) // 4) if sparse else None
-    return frame if frame is not None else dense_frame(n)
+def _by_search(net: Network, deadline: float | None, seed: int, *, proof: bool) -> Decision:
+    stated, tables = net.constraints(), Tables.of(net.calculus)
+    frame = _frame(net, stated.i, stated.j)
+    arcs = frame.arcs(stated.i, stated.j)
+    log: list[NDArray[np.int32]] | None = [] if proof else None
+    engine = Engine(tables, frame, arcs, stated.mask.astype(np.int16), seed=seed, log=log)
+    consistent = engine.close(deadline)
+    if consistent:
+        consistent = engine.search(deadline)
+    # every stated pair is settled: its label holds all of the hull of what the search left
+    witness = Witness(net.calculus, net.entities, frame, arcs, tables.hull[engine.relations()[arcs]]) if consistent else None
+    kind: Kind | None = "time" if consistent is None else None
+    return Decision(consistent, kind, witness, frame, None if log is None else tuple(log), engine.compiling)
 
 
-def _by_sat(net: Network, method: str, deadline: float | None) -> bool | None:
+def _by_sat(net: Network, method: str, deadline: float | None) -> Decision:
     encoding, _, solver_name = method.partition(":")
     encoded = encode(encoding, net.calculus, net.n_entities, net.constraints().triples())
     left = None if deadline is None else deadline - time.perf_counter()
     if left is not None and left <= 0:
-        return None
+        return Decision(None, "time")
     with open_solver(solver_name or DEFAULT_SOLVER, encoded.clauses) as solver:
-        return solver.solve(budget=left)
+        consistent = solver.solve(budget=left)
+        if consistent is None:
+            return Decision(None, "time")
+        model = encoded.decode(solver.model()) if consistent else {}
+    if not consistent:
+        return Decision(consistent=False)
+    pairs = np.array(sorted(model), dtype=np.int64).reshape(-1, 2)
+    masks = np.array([model[i, j] for i, j in pairs.tolist()], dtype=np.int64)
+    return Decision(consistent=True, witness=_witness(net, pairs[:, 0], pairs[:, 1], masks))
+
+
+def _witness(net: Network, i: NDArray[Any], j: NDArray[Any], masks: NDArray[Any]) -> Witness | None:
+    """Return labels that are known to have a scenario as what it is read off."""
+    if not theory_of(net.calculus).closure_decides:
+        return None
+    frame = _frame(net, i, j)
+    return Witness(net.calculus, net.entities, frame, frame.arcs(i, j), masks.astype(np.int16))
+
+
+def _frame(net: Network, i: NDArray[Any], j: NDArray[Any]) -> Frame:
+    """Keep a chordal completion where that decides and has less than half of all pairs, else all."""
+    n = net.n_entities
+    sparse = n > 1 and theory_of(net.calculus).closure_decides
+    frame = triangulated_frame(n, i, j, most=n * (n - 1) // 4) if sparse else None
+    return frame if frame is not None else dense_frame(n)

@@ -13,8 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ninefold.encodings.rcc8 import RCC5, RCC8
-from ninefold.encodings.subclasses import H5, H8
+from ninefold.encodings.theory import theory_of
 
 from .derivation import RecordedClosure
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
     from .derivation import Derivation
 
-__all__ = ["Refutation", "decides", "parts_of", "refute"]
+__all__ = ["Refutation", "refute"]
 
 _LOOK_AHEAD = 16
 """Entities up to which every pair is tried before one is split."""
@@ -76,19 +75,6 @@ class Refutation:
         return 0 if self.derivation else 1 + max(case.depth for _, case in self.cases)
 
 
-def parts_of(calculus: Calculus, mask: int) -> tuple[int, ...]:
-    """Return the parts that a case split tries: members of a tractable subclass where one is known, else base relations."""
-    for known, tractable in ((RCC8, H8), (RCC5, H5)):
-        if calculus is known or (calculus.name == known.name and calculus == known):
-            return tractable.split(mask)
-    return tuple(1 << k for k in range(calculus.n_bases) if mask >> k & 1)
-
-
-def decides(calculus: Calculus, mask: int) -> bool:
-    """Tell whether closure decides networks of relations like this one; the universal relation always counts."""
-    return mask == calculus.universal or len(parts_of(calculus, mask)) == 1
-
-
 class _TooLong(Exception):
     """The proof has too many cases."""
 
@@ -121,6 +107,7 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
 class _Splitter:
     def __init__(self, closure: RecordedClosure, constraints: Sequence[Constraint], most: int) -> None:
         self._closure = closure
+        self._theory = theory_of(closure.calculus)
         self._first = len(constraints)
         self._left = most
         self._pairs = list(dict.fromkeys((min(i, j), max(i, j)) for i, j, _ in constraints if i != j))
@@ -139,7 +126,7 @@ class _Splitter:
             return None
         mark, label = closure.mark(), closure.relation(*pair)
         cases: list[tuple[int, Refutation]] = []
-        for part in parts_of(closure.calculus, label):
+        for part in self._theory.parts_of(label):
             closure.state(*pair, part, self._first + depth)
             found = self.search(depth + 1)
             closure.undo(mark)
@@ -153,18 +140,18 @@ class _Splitter:
 
     def _choose(self, depth: int) -> tuple[int, int] | None:
         """Return the stated pair to split, or None if closure has decided."""
-        closure, calculus = self._closure, self._closure.calculus
-        open_pairs = [pair for pair in self._pairs if not decides(calculus, closure.relation(*pair))]
+        closure = self._closure
+        open_pairs = [pair for pair in self._pairs if not self._theory.decides(closure.relation(*pair))]
         if not open_pairs:
             return None
         if closure.n > _LOOK_AHEAD:
-            return max(open_pairs, key=lambda pair: self._blamed[pair] / len(parts_of(calculus, closure.relation(*pair))))
+            return max(open_pairs, key=lambda pair: self._blamed[pair] / len(self._theory.parts_of(closure.relation(*pair))))
         return min(open_pairs, key=lambda pair: self._after_split(pair, depth))
 
     def _after_split(self, pair: tuple[int, int], depth: int) -> tuple[int, int]:
         """Return how many parts of a pair survive closure, and how many there are: few are best."""
         closure = self._closure
-        parts, mark, alive = parts_of(closure.calculus, closure.relation(*pair)), closure.mark(), 0
+        parts, mark, alive = self._theory.parts_of(closure.relation(*pair)), closure.mark(), 0
         for part in parts:
             closure.state(*pair, part, self._first + depth)
             alive += closure.close()

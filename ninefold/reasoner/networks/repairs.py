@@ -35,6 +35,7 @@ from ninefold.errors import BadInput
 
 from .conflicts import Conflict, Shrinker
 from .consistency import Consistent, Inconsistent, check
+from .deciding import undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -99,6 +100,12 @@ def repair(net: Network, *, seed: int = 0, budget: float | None = None) -> Repai
         Seconds, after which the repair is completed greedily and not `Repair.optimal`; None is returned if even that
         cannot be decided in twice the time.
 
+    Raises
+    ------
+    Undecided
+        Nobody has shown that closure decides the calculus, and it refutes no more: whether the rest is consistent is not
+        known.
+
     Notes
     -----
     Statements of weight 0 cost nothing to drop, yet only those that have to go are dropped.
@@ -152,6 +159,8 @@ class _Work:
             if isinstance(verdict, Consistent):
                 return found
             if not isinstance(verdict, Inconsistent):
+                if verdict.kind == "theory":
+                    raise undecided(self._net.calculus)
                 return found or None
             shrinker = Shrinker(self._net, self._seed, soft_only=True)
             shrunk = shrinker.conflict(rest, known=True)
