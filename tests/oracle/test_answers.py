@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
-from ninefold.reasoner.networks._sparse_trace import pairs_behind_refutation
 from ninefold.reasoner.networks.conflicts import Conflict, conflict
 from ninefold.reasoner.networks.derivation import RecordedClosure
 from ninefold.reasoner.networks.enumeration import count, scenarios, some_scenario
@@ -371,24 +370,6 @@ def test_ask_agrees_with_all_scenarios(calculus):
 def check_forced(calculus, n, kept, truth, *, forced):
     if len(kept) >= n - 1 or calculus.n_bases <= 5:
         assert {truth(s) for s in every_scenario(calculus, n, kept)} <= {forced}
-
-
-def test_the_sparse_trace_names_statements_that_closure_refutes():
-    rng = np.random.default_rng(13)
-    reference, refuted = REFERENCES["rcc8"], 0
-    for _ in range(150):
-        n = int(rng.integers(4, 9))
-        constraints = random_network(RCC8, rng, n, float(rng.uniform(2, n - 1)), 2.5)
-        pairs = Network.from_constraints(RCC8, n, constraints).constraints()
-        found = pairs_behind_refutation(RCC8, pairs)
-        closes = reference.closure(n, reference.labels(n, constraints)) is not None
-        if found is None:
-            assert closes or reference.solve(n, constraints) is None
-            continue
-        refuted += 1
-        triples = pairs.triples()
-        assert reference.closure(n, reference.labels(n, [triples[pair] for pair in found])) is None
-    assert refuted > 20
 
 
 def test_conflicts_of_networks_too_large_for_all_pairs():

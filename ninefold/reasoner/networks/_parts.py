@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine.graph import dense_frame, triangulated_frame
+from ..engine.tables import Tables
 from ._cores import CoreSearch
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from ninefold.encodings.calculus import Calculus
 
     from ..engine.graph import Frame
-    from ..engine.tables import Tables
     from .network import Statement
 
 __all__ = ["Part"]
@@ -33,8 +33,6 @@ class Part:
     ----------
     statements
         Not about one entity alone.
-    tables
-        The calculus, for the engine.
     decides
         Whether closure decides it, on chordal completions too. Then pairs are kept sparingly, and statements whose graph
         has no cycle need no search: from one entity to the next each of them can be satisfied.
@@ -44,9 +42,7 @@ class Part:
         Elementary steps that were done before for the same purpose.
     """
 
-    def __init__(
-        self, statements: Sequence[Statement], calculus: Calculus, tables: Tables, *, decides: bool, seed: int, work: int
-    ) -> None:
+    def __init__(self, statements: Sequence[Statement], calculus: Calculus, *, decides: bool, seed: int, work: int) -> None:
         index: dict[str, int] = {}
         for s in statements:
             index.setdefault(s.a, len(index))
@@ -65,7 +61,8 @@ class Part:
         frame = _frame(self._n, pairs[:, 0], pairs[:, 1], sparse=decides)
         masks = np.array([s.mask for s in statements], dtype=np.int16)
         hard = np.array([s.hard for s in statements], dtype=bool)
-        self._search = CoreSearch(tables, frame, frame.arcs(ends[:, 0], ends[:, 1]), masks, hard, seed=seed, work=work)
+        arcs = frame.arcs(ends[:, 0], ends[:, 1])
+        self._search = CoreSearch(Tables.of(calculus), frame, arcs, masks, hard, seed=seed, work=work)
 
     @property
     def searched(self) -> bool:

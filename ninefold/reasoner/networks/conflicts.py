@@ -33,9 +33,8 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ninefold.encodings import ALLEN, H8, POINT, RCC5, RCC8
+from ninefold.encodings.theory import theory_of
 
-from ..engine.tables import Tables
 from ._cores import OutOfTime
 from ._parts import Part
 from .derivation import RecordedClosure
@@ -181,9 +180,8 @@ class Shrinker:
         self._deadline = deadline
         self._soft_only = soft_only
         self._statements = net.statements
-        self._decides = net.calculus in (RCC8, RCC5, POINT, ALLEN)
+        self._decides = theory_of(net.calculus).closure_decides
         self._work = 0
-        self._tables: Tables | None = None
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
         """Return a conflict among statements `indices`, and whether it is minimal; None if there is none.
@@ -260,11 +258,8 @@ class Shrinker:
 
     def _part(self, indices: Sequence[int], more: int = 0) -> Part:
         """Lay out some statements for the search."""
-        calculus = self._net.calculus
-        if self._tables is None:
-            self._tables = Tables.of(calculus, H8.member if calculus == RCC8 else None)
         chosen = [self._statements[k] for k in indices]
-        return Part(chosen, calculus, self._tables, decides=self._decides, seed=self._seed + more, work=self._work)
+        return Part(chosen, self._net.calculus, decides=self._decides, seed=self._seed + more, work=self._work)
 
     def _refuted(self, part: Part, rest: Sequence[int], deadline: float | None) -> list[int] | None:
         """Return what a refutation of some statements rests on, or None; compiled code pays by what all parts cost."""
