@@ -50,13 +50,13 @@ class UnknownName(NinefoldError, KeyError):
     kind, name
         What was looked up ("vertex", "edge", "set", ...) and the name given.
     near
-        Up to three existing names that look alike.
+        Up to three existing names that look alike; or what is known to be meant.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str] = ()) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str] = (), *, meant: str | None = None) -> None:
         self.kind = kind
         self.name = name
-        self.near = tuple(get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5))
+        self.near = (meant,) if meant else tuple(get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5))
         hint = f"; did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
         self.message = f"there is no {kind} named {name!r}{hint}"
         super().__init__(self.message)

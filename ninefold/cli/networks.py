@@ -118,6 +118,7 @@ def prove(
     from ninefold.errors import BadInput
     from ninefold.reasoner.networks.proofs import Proof
     from ninefold.reasoner.networks.proofs import prove as confirm
+    from ninefold.reasoner.networks.words import counted
 
     network = _read(net, calculus)
     try:
@@ -127,7 +128,7 @@ def prove(
     except BadInput as error:
         raise BadInput(f"{log}: {error}") from None
     try:
-        with progress(f"confirming {len(proof.clauses):,} clauses"):
+        with progress(f"confirming {counted(len(proof.clauses), 'clause')}"):
             confirm(network, proof)
     except BadInput as error:
         _print(
@@ -135,7 +136,9 @@ def prove(
         )
         return NO
     _print(
-        {"proved": True, "clauses": len(proof.clauses)}, f"proved: {len(proof.clauses):,} clauses confirmed", as_json=as_json
+        {"proved": True, "clauses": len(proof.clauses)},
+        f"proved: {counted(len(proof.clauses), 'clause')} confirmed",
+        as_json=as_json,
     )
     return YES
 
@@ -226,6 +229,7 @@ def repair(
     from ninefold.errors import Undecided
     from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.repairs import repair as cheapest
+    from ninefold.reasoner.networks.words import counted
 
     network = _read(net, calculus)
     reason = why_unknown(network.calculus, "time", budget)
@@ -243,7 +247,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop):,} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -328,7 +332,9 @@ def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 
 def _counts(network: "Network") -> str:
-    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+    from ninefold.reasoner.networks.words import counted
+
+    return f"{counted(network.n_entities, 'entity', 'entities')}, {counted(network.n_statements, 'statement')}"
 
 
 def _triples(scenario: "Scenario") -> list[list[str]]:
@@ -340,10 +346,9 @@ def _stated(network: "Network", statements: "Iterable[Statement]") -> list[list[
 
 
 def _spoken(network: "Network", s: "Statement") -> str:
-    from ninefold.reasoner.networks.words import phrase
+    from ninefold.reasoner.networks.words import spoken
 
-    label = f" ({s.label})" if s.label else ""
-    return f"{phrase(network.calculus, s.a, s.mask, s.b)}{label}"
+    return spoken(network.calculus, s)
 
 
 def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tuple[str, str, str]]:
@@ -359,13 +364,14 @@ def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list
     """Return the statements of a conflict, and it and its derivation in words."""
     from ninefold.reasoner.networks.conflicts import conflict
     from ninefold.reasoner.networks.explanation import explain
+    from ninefold.reasoner.networks.words import counted
 
     with progress("seeking a minimal conflict"):
-        found = conflict(network, seed=seed, budget=budget)
+        found = conflict(network, seed=seed, budget=budget, known=True)
         if found is None:
             return [], ""
         kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
-        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 
 

@@ -57,7 +57,7 @@ _WORTH = 0.97
 """Another round is made where the last one left at most this share of the statements."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Conflict:
     """Statements of a network that are inconsistent together.
 
@@ -172,16 +172,20 @@ class Shrinker:
     soft_only
         Leave hard statements where they are: they count as part of the conflict, all of them, and are never left out. A
         repair, which drops soft statements only, has no use for knowing which of the hard ones take part.
+    work
+        Elementary steps that were done before for the same purpose; many of them make compiled code pay.
     """
 
-    def __init__(self, net: Network, seed: int = 0, deadline: float | None = None, *, soft_only: bool = False) -> None:
+    def __init__(
+        self, net: Network, seed: int = 0, deadline: float | None = None, *, soft_only: bool = False, work: int = 0
+    ) -> None:
         self._net = net
         self._seed = seed
         self._deadline = deadline
         self._soft_only = soft_only
         self._statements = net.statements
         self._decides = theory_of(net.calculus).closure_decides
-        self._work = 0
+        self._work = work
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
         """Return a conflict among statements `indices`, and whether it is minimal; None if there is none.

@@ -23,7 +23,7 @@ from ninefold.errors import BadInput
 
 from .conflicts import Conflict, conflict
 from .refutation import refute
-from .words import phrase
+from .words import counted, phrase, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,11 +37,14 @@ __all__ = ["Explanation", "explain"]
 MOST_CASES = 24
 """Cases a proof is printed with unless asked otherwise."""
 
+_SHOWN = 100
+"""Characters of the first line that a repr shows."""
+
 _SEARCHED = 8
 """Closures tried for each case that may be printed."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
     """A derivation in words; ``str`` gives all of it.
 
@@ -66,6 +69,11 @@ class Explanation:
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
+
+    def __repr__(self) -> str:
+        size = counted(self.cases, "case") if self.complete else "too long to print"
+        first = self.lines[0] if len(self.lines[0]) <= _SHOWN else f"{self.lines[0][:_SHOWN]} ..."
+        return f"Explanation({size}, {counted(len(self.lines), 'line')}: {first})"
 
 
 def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0) -> Explanation:
@@ -100,11 +108,12 @@ def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0)
 def _listed(found: Conflict, refutation: Refutation | None, most: int) -> list[str]:
     calculus = found.network.calculus
     if refutation is None:
-        end = f"No proof of up to {most} cases was found, so none is printed; check confirms the contradiction."
+        end = f"No proof of up to {counted(most, 'case')} was found, so none is printed; check confirms the contradiction."
     else:
-        end = f"The proof takes {refutation.n_leaves} cases and is not printed; check confirms the contradiction."
-    shown = [f"  {phrase(calculus, s.a, s.mask, s.b)}{_said(s)}" for s in found.statements]
-    head = f"These {len(shown)} statements contradict each other"
+        cases = counted(refutation.n_leaves, "case")
+        end = f"The proof takes {cases} and is not printed; check confirms the contradiction."
+    shown = [f"  {spoken(calculus, s)}" for s in found.statements]
+    head = f"These {counted(len(shown), 'statement')} contradict each other"
     necessary = ", and none of them can be left out" if found.minimal else ""
     return [f"{head}{necessary}:", *shown, end]
 
@@ -134,7 +143,7 @@ class _Writer:
         if refutation.ground is not None and len(refutation.ground.facts) > 1:
             self._derivation(refutation.ground, indent)
         left = self._phrase(i, j, refutation.label)
-        self.lines.append(f"{indent}{len(refutation.cases)} cases, since {left}:")
+        self.lines.append(f"{indent}{counted(len(refutation.cases), 'case')}, since {left}:")
         for number, (part, case) in enumerate(refutation.cases):
             self.lines.append(f"{indent}case {number + 1}, {self._phrase(i, j, part)}:")
             self._assumed.append((i, j, part))

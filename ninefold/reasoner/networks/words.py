@@ -73,15 +73,15 @@ def told(calculus: Calculus, statements: Sequence[Statement]) -> str:
     return "; ".join(shown)
 
 
-def counted(n: int, noun: str) -> str:
-    """Return a number and a noun that agree with each other.
+def counted(n: int, noun: str, plural: str | None = None) -> str:
+    """Return a number and a noun that agree with each other; the plural has an s unless it is given.
 
     Examples
     --------
-    >>> counted(1, "statement"), counted(1200, "case")
-    ('1 statement', '1,200 cases')
+    >>> counted(1, "statement"), counted(1200, "case"), counted(2, "entity", "entities")
+    ('1 statement', '1,200 cases', '2 entities')
     """
-    return f"{n:,} {noun}{'' if n == 1 else 's'}"
+    return f"{n:,} {noun if n == 1 else plural or f'{noun}s'}"
 
 
 def _either(words: list[str]) -> str:
