@@ -25,7 +25,7 @@ import numpy as np
 from ninefold._kernels import kernel
 
 from .analyse import conflict_premises, rest_of_clause
-from .clauses import add_clause
+from .clauses import add_clause, attach
 from .columns import (
     ARENA_FULL,
     ARENA_TOP,
@@ -82,6 +82,7 @@ __all__ = [
     "SETS_FULL",
     "STATED",
     "Trace",
+    "attach_all",
     "close_traced",
     "detach_root",
     "new_trace",
@@ -551,6 +552,13 @@ def _split(s, d, edge):  # type: ignore[no-untyped-def]
     if part == 0 or s.hull[part] & ~s.marks[edge, LABEL] != 0:
         part = s.split[relation]
     narrow(s, 2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], part, DECIDED, 0, True)
+
+
+@kernel(_nrt=False)
+def attach_all(s):  # type: ignore[no-untyped-def]
+    """Watch every clause; none is watched yet."""
+    for clause in range(s.reg[N_CLAUSES]):
+        attach(s, clause)
 
 
 @kernel(_nrt=False)

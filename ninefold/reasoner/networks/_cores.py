@@ -15,7 +15,6 @@ import numpy as np
 
 from ..engine import columns as c
 from ..engine import tracing as t
-from ..engine.clauses import attach
 from ..engine.state import new_state
 
 if TYPE_CHECKING:
@@ -299,9 +298,7 @@ class CoreSearch:
         self._trace.clause_set[:count] = rows
         state.reg[c.N_CLAUSES], state.reg[c.ARENA_TOP] = count, total
         state.edges[:, c.WATCH] = -1
-        watch = attach.for_work(10 * (self.work + int(state.reg[c.TICKS])) + self._frame.n_edges)
-        for clause in range(count):
-            watch(state, clause)
+        t.attach_all.for_work(10 * (self.work + int(state.reg[c.TICKS])) + self._frame.n_edges)(state)
 
     def _present(self) -> tuple[_Clauses, NDArray[np.int32]]:
         """Return the clauses of the state and the rows of their sets."""
