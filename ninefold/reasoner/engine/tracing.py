@@ -68,7 +68,7 @@ from .columns import (
 from .decide import decay, luby, next_split
 from .explain import explain, made_true_at
 from .narrow import backjump, narrow
-from .search import LONGEST_JUMP, RESTART_UNIT, propagate, recheck
+from .search import LONGEST_JUMP, propagate, recheck
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,6 +95,9 @@ STATED = -3
 
 SETS_FULL = 10
 """Answer of the kernels: no room for more sets of statements."""
+
+_RESTART_UNIT = 10
+"""Conflicts to the first restart: with a scenario of nearly the same question to begin at, little is lost by it."""
 
 _LONGEST_PROOF = 60
 _MASK_BITS = 14
@@ -523,7 +526,7 @@ def search_traced(s, d, limit):  # type: ignore[no-untyped-def]
             if status != CONFLICT:
                 return status
             continue
-        if reg[SINCE_RESTART] >= RESTART_UNIT * luby(reg[RESTARTS] + 1):
+        if reg[SINCE_RESTART] >= _RESTART_UNIT * luby(reg[RESTARTS] + 1):
             reg[RESTARTS] += 1
             reg[SINCE_RESTART] = 0
             backjump(s, 0)
