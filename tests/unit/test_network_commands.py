@@ -80,6 +80,16 @@ def test_check_inconsistent(run, broken):
     assert (code, found["conflict"]) == (1, None)
 
 
+def test_counts_agree_with_their_nouns(run, tmp_path):
+    one = network(tmp_path / "one.csv", ("a", "meet", "b", "", ""))
+    assert "(2 entities, 1 statement, " in run("check", one)[1]
+    none = network(tmp_path / "none.csv", ("a", "equal", "a", "", ""))
+    assert "(1 entity, 1 statement, " in run("check", none)[1]
+    two = network(tmp_path / "two.csv", ("a", "meet", "b", "", ""), ("a", "inside", "b", "2", ""))
+    assert "minimal conflict of 2 statements:" in run("check", two)[1]
+    assert run("repair", two)[1].startswith("drop 1 of 2 statements, cost 1\n")
+
+
 def test_check_draws(run, house, broken, tmp_path):
     picture = tmp_path / "house.svg"
     code, found = run("check", house, "--draw", picture, "--json")

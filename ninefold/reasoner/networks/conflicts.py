@@ -50,10 +50,10 @@ __all__ = ["Conflict", "Shrinker", "conflict", "part_of"]
 _RECORDED = 400
 """Entities up to which closure is recorded pair by pair, which finds refutations of few steps."""
 
-_ROUNDS = 8
+_ROUNDS = 16
 """Searches, each with another seed, that begin with what the last refutation rests on."""
 
-_WORTH = 0.97
+_WORTH = 0.99
 """Another round is made where the last one left at most this share of the statements."""
 
 
