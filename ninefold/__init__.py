@@ -10,7 +10,7 @@ Examples
 >>> square = nf.mapping.PlaneMap.from_rotation(
 ...     {"a": ["b", "d"], "b": ["c", "a"], "c": ["d", "b"], "d": ["a", "c"]}, outer=("b", "a"))
 >>> room = square.cycle(["a", "b", "c", "d"])
->>> nf.reasoner.sets.relate(square.vertex("a"), room).name
+>>> nf.relate(square.vertex("a"), room).name
 'meet'
 """
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from . import encodings, errors, io, layout, mapping, reasoner
     from .errors import NinefoldError
     from .io.atlas.atlas import Atlas
-    from .io.formats import read_map
+    from .io.maps import read_map
     from .io.networks.network_file import read_network
     from .io.walks.json_lines import read_walk
     from .layout.layouts import draw
@@ -63,7 +63,7 @@ __getattr__, __dir__ = attach(
     {
         "errors": ("NinefoldError",),
         "io.atlas.atlas": ("Atlas",),
-        "io.formats": ("read_map",),
+        "io.maps": ("read_map",),
         "io.networks.network_file": ("read_network",),
         "io.walks.json_lines": ("read_walk",),
         "layout.layouts": ("draw",),

@@ -25,6 +25,7 @@ from functools import cache
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .encoding import Clause, Constraint, Encoding, label_matrix
@@ -61,7 +62,8 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
     """
     known = theory_of(calculus).horn
     if known is None:
-        raise BadInput(f"no Horn theory of {calculus.name!r} is known, only of rcc8 and rcc5: use another encoding")
+        name = quoted(calculus.name)
+        raise BadInput(f"no Horn theory of {name} is known, only of rcc8 and rcc5: use another encoding")
     theory = known.value
     given = label_matrix(calculus, n, constraints)
     triangles: Iterable[tuple[int, int, int]]

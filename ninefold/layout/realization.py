@@ -35,17 +35,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.encodings.model import matches
 from ninefold.encodings.rcc8 import RCC8
 from ninefold.encodings.theory import theory_of
 from ninefold.errors import BadInput, NinefoldError
+from ninefold.reasoner.networks.scenario import Scenario
 from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ninefold.encodings.model import BaseMeaning
-    from ninefold.reasoner.networks.scenario import Scenario
 
 __all__ = ["realize"]
 
@@ -81,6 +82,8 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     ----------
     With k islands and d demands O(d k n) to lay the islands, and n^2 / 2 calls of GEOS.
     """
+    if not isinstance(scenario, Scenario):
+        raise BadInput(_not_a_scenario(scenario))
     known = theory_of(scenario.calculus).model
     if known is None:
         raise BadInput(f"only regions can be drawn: scenarios of rcc8 and rcc5, not of {scenario.calculus.name}")
@@ -94,6 +97,15 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     }  # fmt: skip
     _confirm(scenario, list(shapes.values()))
     return shapes
+
+
+def _not_a_scenario(given: object) -> str:
+    from ninefold.reasoner.networks.consistency import Consistent, Inconsistent, Unknown
+
+    if isinstance(given, Inconsistent | Unknown):
+        return f"realize takes the scenario of a consistent network, and this verdict is {quoted(given)}: it has none"
+    call = "verdict.scenario" if isinstance(given, Consistent) else "check(network).scenario"
+    return f"realize takes a scenario, not {quoted(given)}; call realize({call})"
 
 
 class _Relations:
@@ -255,5 +267,5 @@ def _confirm(scenario: Scenario, shapes: list[Any]) -> None:
         found = name if fine else _COARSE.get(name, name)
         wanted = scenario.calculus.bases[int(scenario.bases[a, b])]
         if found != wanted:
-            pair = f"{scenario.entities[a]!r} and {scenario.entities[b]!r}"
+            pair = f"{quoted(scenario.entities[a])} and {quoted(scenario.entities[b])}"
             raise NinefoldError(f"the drawing of {pair} is {found} by GEOS and {wanted} in the scenario; please report this")

@@ -9,13 +9,14 @@ import pytest
 from ninefold.encodings import ALLEN, H8
 from ninefold.reasoner.engine import columns as c
 from ninefold.reasoner.engine.analyse import analyse, minimise
+from ninefold.reasoner.engine.clauses import attach
 from ninefold.reasoner.engine.decide import decay, luby, next_split
 from ninefold.reasoner.engine.explain import explain, explain_triangle_conflict, made_true_at, relation_before, weaken_pair
 from ninefold.reasoner.engine.graph import arc_between, dense_frame, eliminate, triangulated_frame
-from ninefold.reasoner.engine.narrow import backjump
+from ninefold.reasoner.engine.narrow import backjump, narrow
 from ninefold.reasoner.engine.queue import clear_queue, enqueue, open_queue, take_smallest
 from ninefold.reasoner.engine.search import learn, propagate, recheck, settle_root, split
-from ninefold.reasoner.engine.state import node_table
+from ninefold.reasoner.engine.state import new_state, node_table, state_labels, watch_again
 from ninefold.reasoner.engine.sweep import losing_partners
 from ninefold.reasoner.engine.tables import atomic_subclass, compose_masks
 from ninefold.reasoner.engine.words import bit_count, lowest_bit
@@ -187,6 +188,55 @@ def test_closure(name, chordal):
             assert relations(run) == wanted
             check_state(run)
     assert True in answers
+
+
+@pytest.mark.parametrize("chordal", [False, True])
+@pytest.mark.parametrize("name", CALCULI)
+def test_labels_are_stated_as_by_narrowing_one_after_another(name, chordal):
+    calculus, tables = CALCULI[name][0], TABLES[name]
+    i, j, mask = stated(calculus, random_constraints(name, 3, 90, 5))
+    mask[::7] = calculus.universal  # says nothing
+    frame = triangulated_frame(90, i, j, most=90 * 90) if chordal else dense_frame(90)
+    assert (frame.core > 0) == chordal
+    arcs = frame.arcs(i, j)
+    assert (arcs & 1).any() or not chordal
+    at_once, in_turn = (new_state(tables, frame, arcs, mask, rng=np.random.default_rng(0)) for _ in range(2))
+    for s in (at_once, in_turn):
+        s.active[:] = -1  # rows not in use are not initialised
+    state_labels(at_once, arcs, mask.astype(np.int16))
+    s = in_turn
+    for arc, relation in zip(arcs.tolist(), mask.tolist(), strict=True):
+        if relation != tables.full:
+            edge, back = arc >> 1, arc & 1
+            ends = s.edges[edge, c.TAIL + back], s.edges[edge, c.HEAD - back]
+            narrow.plain(s, arc, *ends, relation, c.DECIDED, 0, True)
+    for field in ("dom", "edges", "nodes", "planes", "active", "reg"):
+        assert (getattr(at_once, field) == getattr(in_turn, field)).all(), field
+
+
+@pytest.mark.parametrize("n_clauses", [0, 1, 40])
+def test_clauses_are_watched_as_one_after_another(n_clauses):
+    rng = np.random.default_rng(5)
+    states = [engine("rcc8", 8, random_constraints("rcc8", 1, 8, 4)).state for _ in range(2)]
+    clauses = [(rng.choice(28, int(rng.integers(2, 6)), replace=False), rng.integers(1, 255, 6)) for _ in range(n_clauses)]
+    for s in states:
+        s.watch[:] = -7
+        s.edges[:, c.WATCH] = 3  # of clauses that are gone
+        top = 0
+        for clause, (edges, masks) in enumerate(clauses):
+            s.place[clause] = top
+            s.arena[top : top + 2] = len(edges), 2
+            literals = np.stack([edges, masks[: len(edges)]], axis=1).ravel()
+            s.arena[top + 2 : top + 2 + literals.size] = literals
+            top += 2 + literals.size
+        s.reg[c.N_CLAUSES] = n_clauses
+    at_once, in_turn = states
+    watch_again(at_once)
+    in_turn.edges[:, c.WATCH] = -1
+    for clause in range(n_clauses):
+        attach.plain(in_turn, clause)
+    assert (at_once.watch == in_turn.watch).all()
+    assert (at_once.edges == in_turn.edges).all()
 
 
 def at_conflict(name, seed, chordal, n):

@@ -135,6 +135,12 @@ def test_networks_that_say_nothing(calculus):
         if n > 1:
             net.add("0", "1", calculus.universal)
             assert check(net).scenario.is_closed()
+    for k in range(30):
+        net.add_entity(k)  # most of them related to nothing, so that the completion has nodes without neighbours
+    scenario = check(net).scenario
+    alone = [[scenario.mask(i, j) for j in range(30)] for i in range(30)]
+    assert scenario.is_closed()
+    assert (1 << scenario.bases.astype(np.int64) == alone).all()
 
 
 def test_the_search_is_not_repeated(monkeypatch):

@@ -66,21 +66,10 @@ from .narrow import backjump, narrow
 from .queue import enqueue, take_smallest
 from .sweep import close_triangles
 
-__all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root", "state_labels"]
+__all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root"]
 
 RESTART_UNIT = 50
 LONGEST_JUMP = 100
-
-
-@kernel(_nrt=False)
-def state_labels(s, arcs, masks):  # type: ignore[no-untyped-def]
-    """Give the stated arcs their relations and queue them."""
-    edges = s.edges
-    for k in range(arcs.size):
-        if masks[k] != s.reg[FULL]:
-            arc = arcs[k]
-            edge, back = arc >> 1, arc & 1
-            narrow(s, arc, edges[edge, TAIL + back], edges[edge, HEAD - back], masks[k], DECIDED, 0, True)
 
 
 @kernel(_nrt=False)
@@ -128,7 +117,7 @@ def recheck(s):  # type: ignore[no-untyped-def]
     return False
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=3)
 def close(s, limit):  # type: ignore[no-untyped-def]
     """Close the stated network at level 0; answers as `propagate`."""
     while True:
@@ -187,7 +176,7 @@ def split(s, edge):  # type: ignore[no-untyped-def]
     narrow(s, 2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.split[s.dom[2 * edge]], DECIDED, 0, True)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=6)
 def search(s, limit):  # type: ignore[no-untyped-def]
     """Search until an answer, `limit` in the register TICKS, or a shortage of room.
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ninefold.encodings.calculus import Calculus
 
     from ..engine.graph import Frame
-    from .network import Statement
+    from .statement import Statement
 
 __all__ = ["Part"]
 

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -68,9 +69,8 @@ class Completion:
 
         Complexity
         ----------
-        O(log d) for a kept pair. Otherwise O(d) for every pair met on the way up the elimination, where the earlier node of
-        a pair that is not kept is replaced by each of its at most d later neighbours: O(n d) in a chain, and O(d^2) where
-        those neighbours are in the core.
+        O(log E) for a kept pair. Otherwise a few array operations for every node met on the way up the elimination, where
+        the earlier node of a pair that is not kept is replaced by each of its later neighbours.
         """
         p, q = int(self.frame.place[i]), int(self.frame.place[j])
         if p == q:
@@ -80,29 +80,40 @@ class Completion:
 
     def _between(self, p: int, q: int) -> int:
         """Return the base relation of node p to a later node q."""
-        known: dict[tuple[int, int], int] = {}
-        open_pairs: dict[tuple[int, int], list[tuple[int, int]]] = {}
-        waiting = [(p, q)]
+        edge = int(self._edges(np.array([p]), np.array([q]))[0])
+        if edge >= 0:
+            return int(self.bases[edge])
+        frame = self.frame
+        # upwards: which pairs are needed, by their earlier node; those that a pair rests on have a later one
+        needed: dict[int, set[int]] = {p: {q}}
+        waiting, plan = [p], []
         while waiting:
-            pair = waiting.pop()
-            if pair in known or pair in open_pairs:
-                continue
-            edge = self._edge(*pair)
-            if edge >= 0:
-                known[pair] = int(self.bases[edge])
-                continue
-            first, second = pair
-            edges = range(self.frame.first[first], self.frame.first[first + 1])
-            near = self.frame.upper[edges.start : edges.stop].tolist()
-            open_pairs[pair] = list(zip(near, self.bases[edges.start : edges.stop].tolist(), strict=True))
-            waiting += [(min(s, second), max(s, second)) for s in near]
+            first = heappop(waiting)
+            near, others = frame.upper[frame.first[first] : frame.first[first + 1]], np.array(sorted(needed[first]))
+            edges = self._edges(near[:, np.newaxis], others)
+            rows, columns = np.nonzero(edges < 0)
+            for s, other in zip(near[rows].tolist(), others[columns].tolist(), strict=True):
+                low, high = min(s, other), max(s, other)
+                if low not in needed:
+                    needed[low] = set()
+                    heappush(waiting, low)
+                needed[low].add(high)
+            plan.append((first, near, others, edges))
+        # and down again
         converse, compose = self.calculus.base_converse, self.calculus.base_composition
-        for pair in sorted(open_pairs, reverse=True):  # a pair rests on pairs whose earlier node is later
-            label, second = self.calculus.universal, pair[1]
-            for s, through in open_pairs[pair]:
-                onward = known[s, second] if s < second else converse[known[second, s]]
-                label &= int(compose[through, onward])
-            known[pair] = int(_picked(self._first_of, np.array([label]))[0])
+        known: dict[tuple[int, int], int] = {}
+        for first, near, others, edges in reversed(plan):
+            labels = np.full(others.size, self.calculus.universal, dtype=compose.dtype)
+            if near.size:
+                onward = self.bases[np.maximum(edges, 0)]
+                onward = np.where(near[:, np.newaxis] < others, onward, converse[onward])
+                rows, columns = np.nonzero(edges < 0)
+                for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
+                    s, other = int(near[row]), int(others[column])
+                    onward[row, column] = known[s, other] if s < other else converse[known[other, s]]
+                through = self.bases[frame.first[first] : frame.first[first + 1], np.newaxis]
+                labels = np.bitwise_and.reduce(compose[through, onward], axis=0)
+            known.update(zip([(first, x) for x in others.tolist()], _picked(self._first_of, labels).tolist(), strict=True))
         return known[p, q]
 
     @cached_property
@@ -134,15 +145,24 @@ class Completion:
         whole: NDArray[np.uint8] = table[np.ix_(frame.place, frame.place)]
         return whole
 
-    def _edge(self, p: int, q: int) -> int:
-        """Return the edge between nodes p < q, or -1 if the pair is not kept."""
+    def _edges(self, p: NDArray[Any], q: NDArray[Any]) -> NDArray[np.int64]:
+        """Return the edges between nodes p and q, two arrays that fit together; -1 where a pair is not kept."""
         frame = self.frame
-        start = int(frame.first[p])
-        if p >= frame.core:
-            return start + q - p - 1
-        neighbours = frame.upper[start : frame.first[p + 1]]
-        at = int(np.searchsorted(neighbours, q))
-        return start + at if at < neighbours.size and neighbours[at] == q else -1
+        low, high = np.minimum(p, q).astype(np.int64), np.maximum(p, q).astype(np.int64)
+        edges: NDArray[np.int64] = frame.first[low] + high - low - 1
+        before = low < frame.core
+        if before.any():
+            wanted = low[before] * frame.n + high[before]
+            at = np.searchsorted(self._keys, wanted)
+            edges[before] = np.where(self._keys[at] == wanted, at, -1)
+        return edges
+
+    @cached_property
+    def _keys(self) -> NDArray[np.int64]:
+        """TAIL * n + HEAD of the edges before the core, ascending, and one more that is larger than any."""
+        frame = self.frame
+        tails = np.repeat(np.arange(frame.core, dtype=np.int64), np.diff(frame.first[: frame.core + 1]))
+        return np.append(tails * frame.n + frame.upper, np.int64(frame.n) ** 2)
 
 
 def refined(calculus: Calculus, frame: Frame, arcs: NDArray[np.int64], masks: NDArray[Any]) -> Completion:

@@ -33,17 +33,20 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted
 from ninefold.encodings.theory import theory_of
 
 from ._cores import OutOfTime
 from ._parts import Part
 from .derivation import RecordedClosure
-from .words import counted, told
+from .network import require_network
+from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Conflict", "Shrinker", "conflict", "part_of"]
 
@@ -135,6 +138,7 @@ def conflict(net: Network, *, seed: int = 0, budget: float | None = None, known:
     >>> conflict(net) is None
     True
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     found = Shrinker(net, seed, deadline).conflict(range(net.n_statements), known=known)
     if found is None:

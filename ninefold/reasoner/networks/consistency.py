@@ -1,9 +1,10 @@
 """Is a relation network consistent? ``check`` decides it, and only that: drawings and conflicts are made when asked for.
 
-How is the business of `ninefold.reasoner.networks.deciding`; here are the verdicts that users get.
+`ninefold.reasoner.networks.deciding` does the work; here are the verdicts that users get.
 
 Closure of one base relation a pair decides consistency for RCC-8, RCC-5, the point algebra and Allen's intervals. For a
 calculus from a file nobody has shown that, so a network that closure cannot refute is `Unknown` there, never `Consistent`.
+`ninefold.encodings.theory` keeps what is known of each calculus.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from ninefold.errors import BadInput
 
 from .deciding import decide, why_unknown
+from .network import require_network
 from .proofs import Proof, digest_of
 
 if TYPE_CHECKING:
@@ -159,6 +161,7 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     >>> check(net), check(net, method="support")
     (Inconsistent(seed=0), Inconsistent(seed=0))
     """
+    require_network(net)
     decided = net.copy()
     decision = decide(decided, budget=budget, method=method, proof=proof, seed=seed)
     if decision.consistent:

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -44,16 +44,24 @@ __all__ = ["Derivation", "Fact", "RecordedClosure"]
 _MEMORY = 4 << 30
 _I, _J, _VIA, _BEFORE, _AFTER = range(5)
 _FIXPOINT, _EMPTY, _FULL = range(3)
-_PLAIN_STEPS = 2
-"""Elementary steps to look at one triangle, of the kind `Kernel.for_work` counts."""
+
+
+class _Tables(NamedTuple):
+    """Converse and composition of all relations, empty for a calculus with many; and of base relations."""
+
+    converse: NDArray[np.integer]
+    base_converse: NDArray[np.int64]
+    compose: NDArray[np.integer]
+    base_compose: NDArray[np.int64]
 
 
 @kernel
-def _converse(table, base, mask):  # type: ignore[no-untyped-def]
+def _converse(tables, mask):  # type: ignore[no-untyped-def]
     """Return the converse of a relation, from the table of all relations if there is one."""
-    if table.size:
-        return table[mask]
+    if tables.converse.size:
+        return tables.converse[mask]
     result = 0
+    base = tables.base_converse
     for k in range(base.size):
         if mask >> k & 1:
             result |= 1 << base[k]
@@ -61,11 +69,12 @@ def _converse(table, base, mask):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _compose(table, base, r, s):  # type: ignore[no-untyped-def]
+def _compose(tables, r, s):  # type: ignore[no-untyped-def]
     """Return the composition of two relations, from the table of all relations if there is one."""
-    if table.size:
-        return table[r, s]
+    if tables.compose.size:
+        return tables.compose[r, s]
     result = 0
+    base = tables.base_compose
     for k in range(base.shape[0]):
         if r >> k & 1:
             for l in range(base.shape[0]):
@@ -75,7 +84,7 @@ def _compose(table, base, r, s):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _propagate(rel, trail, head, top, absorbing, full, converse, base_converse, compose, base_compose):  # type: ignore[no-untyped-def]
+def _propagate(rel, trail, head, top, absorbing, full, tables):  # type: ignore[no-untyped-def]
     """Close the triangles over every trail row from `head` on; return (status, head, top).
 
     Parameters
@@ -105,10 +114,10 @@ def _propagate(rel, trail, head, top, absorbing, full, converse, base_converse, 
                     if absorbing and second == full:
                         continue
                     old = rel[a, k]
-                    new = old & _compose(compose, base_compose, first, second)
+                    new = old & _compose(tables, first, second)
                     if new != old:
                         rel[a, k] = new
-                        rel[k, a] = _converse(converse, base_converse, new)
+                        rel[k, a] = _converse(tables, new)
                         trail[top, 0] = a
                         trail[top, 1] = k
                         trail[top, 2] = via
@@ -194,8 +203,8 @@ class RecordedClosure:
         np.fill_diagonal(self.labels, calculus.identity)
         self._trail = np.empty((4 * n + 256, 5), dtype=np.int64)
         self._head = self._top = self._work = 0
-        none = np.zeros(0, dtype=dtype)
-        self._tables = (
+        none: NDArray[np.integer] = np.zeros(0, dtype=dtype)
+        self._tables = _Tables(
             calculus.converse_table if calculus.converse_table is not None else none,
             calculus.base_converse.astype(np.int64),
             calculus.composition_table if calculus.composition_table is not None else none.reshape(0, 0),
@@ -237,12 +246,12 @@ class RecordedClosure:
             return False
         full = self.calculus.universal
         while True:
-            before = self._head
-            run = _propagate.for_work(self._work + _PLAIN_STEPS * self.n * (self._top - before))
+            known = self._top
+            run = _propagate.for_work(self._work + self.n * (known - self._head))
             status, self._head, self._top = run(
-                self.labels, self._trail, self._head, self._top, self._absorbing, full, *self._tables
+                self.labels, self._trail, self._head, self._top, self._absorbing, full, self._tables
             )
-            self._work += _PLAIN_STEPS * self.n * (self._head - before)
+            self._work = self.n * max(self._head - known, 0)  # found on the way and not counted yet
             if status != _FULL:
                 return bool(status == _FIXPOINT)
             self._room(len(self._trail))

@@ -19,26 +19,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted, shortened
 from ninefold.errors import BadInput
 
 from .conflicts import Conflict, conflict
 from .refutation import refute
-from .words import counted, phrase, spoken
+from .words import phrase, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from .derivation import Derivation, Fact
-    from .network import Network, Statement
+    from .network import Network
     from .refutation import Refutation
+    from .statement import Statement
 
 __all__ = ["Explanation", "explain"]
 
 MOST_CASES = 24
 """Cases a proof is printed with unless asked otherwise."""
-
-_SHOWN = 100
-"""Characters of the first line that a repr shows."""
 
 _SEARCHED = 8
 """Closures tried for each case that may be printed."""
@@ -72,8 +71,7 @@ class Explanation:
 
     def __repr__(self) -> str:
         size = counted(self.cases, "case") if self.complete else "too long to print"
-        first = self.lines[0] if len(self.lines[0]) <= _SHOWN else f"{self.lines[0][:_SHOWN]} ..."
-        return f"Explanation({size}, {counted(len(self.lines), 'line')}: {first})"
+        return f"Explanation({size}, {counted(len(self.lines), 'line')}: {shortened(self.lines[0])})"
 
 
 def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0) -> Explanation:

@@ -39,6 +39,7 @@ from ..engine.tables import Tables
 from .conflicts import Conflict, conflict
 from .consistency import Consistent, Inconsistent, check
 from .deciding import decide, undecided
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -171,6 +172,7 @@ def infer(net: Network, a: str | int, b: str | int, *, seed: int = 0, budget: fl
     ----------
     One closure, and one check for each base relation that it leaves.
     """
+    require_network(net)
     clock = _Clock(budget)
     i, j = net.index(a), net.index(b)
     first, second = net.entities[i], net.entities[j]
@@ -351,7 +353,9 @@ def minimal(net: Network, *, seed: int = 0, budget: float | None = None) -> Mini
                     _see(seen, verdict.scenario)
                 elif isinstance(verdict, Inconsistent):
                     # what is known now narrows other pairs by closure as well
-                    closure.state_more(i, j, int(seen[i, j]))
+                    labels[i, j] = int(seen[i, j])
+                    rows, columns = np.triu_indices(n, 1)
+                    closure = _engine(calculus, n, rows, columns, labels[rows, columns])
                     exact = _close(closure, clock) is True
                     labels = closure.labels()
                 else:
@@ -368,8 +372,12 @@ def _closure(net: Network) -> Engine | None:
     stated = net.constraints()
     if (stated.mask == 0).any():
         return None
-    frame = dense_frame(net.n_entities)
-    return Engine(Tables.of(net.calculus), frame, frame.arcs(stated.i, stated.j), stated.mask.astype(np.int16))
+    return _engine(net.calculus, net.n_entities, stated.i, stated.j, stated.mask)
+
+
+def _engine(calculus: Calculus, n: int, i: NDArray[Any], j: NDArray[Any], masks: NDArray[Any]) -> Engine:
+    frame = dense_frame(n)
+    return Engine(Tables.of(calculus), frame, frame.arcs(i, j), masks.astype(np.int16))
 
 
 def _close(engine: Engine, clock: _Clock) -> bool | None:

@@ -33,13 +33,15 @@ from ninefold.encodings.sat import open_solver
 from .conflicts import Shrinker
 from .consistency import Consistent, Inconsistent, check
 from .formula import Formula, parse
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from .formula import Atom
-    from .network import Network, Statement
+    from .network import Network
     from .scenario import Scenario
+    from .statement import Statement
 
 __all__ = ["Answer", "ask"]
 
@@ -113,7 +115,8 @@ def ask(net: Network, formula: str | Formula, *, seed: int = 0, budget: float | 
     ----------
     At most one check for each combination of truth values of the atoms; as a rule far fewer.
     """
-    asked = parse(formula, net) if isinstance(formula, str) else formula
+    require_network(net)
+    asked = formula if isinstance(formula, Formula) else parse(formula, net)
     deadline = None if budget is None else time.perf_counter() + budget
     kept = net.copy()
     questions = [_Question(kept, asked, negated=negated, seed=seed, deadline=deadline) for negated in (False, True)]

@@ -31,17 +31,20 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted
 from ninefold.errors import BadInput
 
 from .conflicts import Conflict, Shrinker
 from .consistency import Consistent, Inconsistent, check
 from .deciding import undecided
-from .words import counted, told
+from .network import require_network
+from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Repair", "repair"]
 
@@ -124,6 +127,7 @@ def repair(net: Network, *, seed: int = 0, budget: float | None = None) -> Repai
     ----------
     One conflict for each round; there can be exponentially many rounds.
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     work = _Work(net, seed, deadline)
     dropped: set[int] = set()

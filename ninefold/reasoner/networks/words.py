@@ -13,14 +13,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ninefold._wording import shortened
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ninefold.encodings.calculus import Calculus
 
-    from .network import Statement
+    from .statement import Statement
 
-__all__ = ["counted", "phrase", "spoken", "told"]
+__all__ = ["phrase", "spoken", "told"]
 
 _TOLD = 3
 """Statements that a repr tells."""
@@ -67,21 +69,10 @@ def spoken(calculus: Calculus, statement: Statement) -> str:
 
 def told(calculus: Calculus, statements: Sequence[Statement]) -> str:
     """Return the first few statements in words, and how many more there are: what fits into a repr."""
-    shown = [spoken(calculus, s) for s in statements[:_TOLD]]
+    shown = [shortened(spoken(calculus, s)) for s in statements[:_TOLD]]
     if len(statements) > _TOLD:
         shown.append(f"{len(statements) - _TOLD} more")
     return "; ".join(shown)
-
-
-def counted(n: int, noun: str, plural: str | None = None) -> str:
-    """Return a number and a noun that agree with each other; the plural has an s unless it is given.
-
-    Examples
-    --------
-    >>> counted(1, "statement"), counted(1200, "case"), counted(2, "entity", "entities")
-    ('1 statement', '1,200 cases', '2 entities')
-    """
-    return f"{n:,} {noun if n == 1 else plural or f'{noun}s'}"
 
 
 def _either(words: list[str]) -> str:
