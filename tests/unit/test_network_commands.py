@@ -203,7 +203,7 @@ def test_proofs_are_written_in_every_format_and_said(run, broken, tmp_path, caps
     code, found, err = told("check", broken, "--proof", log, "--json")
     assert (code, found["proof"], "cnf" in found) == (1, str(log), False)
     assert err == f"ninefold: wrote the proof {log}; `prove` confirms it\n"
-    assert told("prove", broken, log)[:2] == (0, "proved: 1 clauses confirmed\n")
+    assert told("prove", broken, log)[:2] == (0, "proved: 1 clause confirmed\n")
     code, found, err = told("check", broken, "--proof", drat, "--proof-format", "drat", "--json")
     assert (code, found["proof"], found["cnf"]) == (1, str(drat), str(drat.with_suffix(".cnf")))
     assert err == f"ninefold: wrote the proof {drat} and the formula {drat.with_suffix('.cnf')} that it refutes\n"
