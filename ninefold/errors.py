@@ -68,14 +68,14 @@ class UnknownName(NinefoldError, KeyError):
     kind, name
         What was looked up ("vertex", "edge", "set", ...) and the name given.
     near
-        Up to three existing names that look alike.
+        Up to three existing names that look alike; or what is known to be meant.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str] = ()) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str] = (), *, meant: str | None = None) -> None:
         self.kind = kind
         self.name = name
         near = get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5) if len(name) <= LONGEST_QUOTE else []
-        self.near = tuple(near)
+        self.near = (meant,) if meant else tuple(near)
         hint = f"; did you mean {' or '.join(map(quoted, self.near))}?" if self.near else ""
         self.message = f"there is no {kind} named {quoted(name)}{hint}"
         super().__init__(self.message)

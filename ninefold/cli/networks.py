@@ -146,7 +146,7 @@ def prove(
     except BadInput as error:
         raise BadInput(f"{log}: {error}") from None
     try:
-        with progress(f"confirming {len(proof.clauses):,} clauses"):
+        with progress(f"confirming {counted(len(proof.clauses), 'clause')}"):
             confirm(network, proof)
     except BadInput as error:
         _print(
@@ -154,7 +154,9 @@ def prove(
         )
         return NO
     _print(
-        {"proved": True, "clauses": len(proof.clauses)}, f"proved: {len(proof.clauses):,} clauses confirmed", as_json=as_json
+        {"proved": True, "clauses": len(proof.clauses)},
+        f"proved: {counted(len(proof.clauses), 'clause')} confirmed",
+        as_json=as_json,
     )
     return YES
 
@@ -262,7 +264,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop):,} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -359,10 +361,9 @@ def _stated(network: "Network", statements: "Iterable[Statement]") -> list[list[
 
 
 def _spoken(network: "Network", s: "Statement") -> str:
-    from ninefold.reasoner.networks.words import phrase
+    from ninefold.reasoner.networks.words import spoken
 
-    label = f" ({s.label})" if s.label else ""
-    return f"{phrase(network.calculus, s.a, s.mask, s.b)}{label}"
+    return spoken(network.calculus, s)
 
 
 def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tuple[str, str, str]]:
@@ -376,14 +377,19 @@ def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tupl
 
 def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list[list[Any]], str]:
     """Return the statements of a conflict, and it and its derivation in words."""
+    from ninefold.encodings.theory import theory_of
     from ninefold.reasoner.networks.conflicts import conflict
     from ninefold.reasoner.networks.explanation import explain
 
     with progress("seeking a minimal conflict"):
-        found = conflict(network, seed=seed, budget=budget)
+        found = conflict(network, seed=seed, budget=budget, known=True)
         if found is None:
             return [], ""
-        kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
+        kind = "minimal conflict"
+        if not found.minimal and theory_of(network.calculus).closure_decides:
+            kind = "conflict, perhaps not minimal since the budget is spent,"
+        elif not found.minimal:
+            kind = f"conflict, perhaps not minimal since nobody has shown that closure decides {network.calculus.name!r},"
         lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 

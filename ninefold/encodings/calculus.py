@@ -32,6 +32,7 @@ from ninefold.errors import BadInput, TooLarge, UnknownName
 
 from . import _laws
 from ._definition import Definition, read_definition
+from .gis_words import meant_by
 
 if TYPE_CHECKING:
     import os
@@ -197,7 +198,7 @@ class Calculus:
         Raises
         ------
         UnknownName
-            A name that is no relation of this calculus, with near ones.
+            A name that is no relation of this calculus, with near ones, or with what the word means elsewhere.
         BadInput
             No name at all, or a mask with bits outside the calculus.
 
@@ -230,7 +231,7 @@ class Calculus:
     def _base_mask(self, name: str) -> int:
         mask = self._masks.get(name) or self._folded.get(name.casefold())
         if mask is None:
-            raise UnknownName("relation", name, self._masks)
+            raise UnknownName("relation", name, self._masks, meant=meant_by(name, self))
         return mask
 
     def names(self, mask: int) -> tuple[str, ...]:

@@ -85,6 +85,16 @@ def test_check_inconsistent(run, broken):
     assert (code, found["conflict"]) == (1, None)
 
 
+def test_counts_agree_with_their_nouns(run, tmp_path):
+    one = network(tmp_path / "one.csv", ("a", "meet", "b", "", ""))
+    assert "(2 entities, 1 statement, " in run("check", one)[1]
+    none = network(tmp_path / "none.csv", ("a", "equal", "a", "", ""))
+    assert "(1 entity, 1 statement, " in run("check", none)[1]
+    two = network(tmp_path / "two.csv", ("a", "meet", "b", "", ""), ("a", "inside", "b", "2", ""))
+    assert "minimal conflict of 2 statements:" in run("check", two)[1]
+    assert run("repair", two)[1].startswith("drop 1 of 2 statements, cost 1\n")
+
+
 def test_check_draws(run, house, broken, tmp_path):
     picture = tmp_path / "house.svg"
     code, found = run("check", house, "--draw", picture, "--json")
@@ -193,7 +203,7 @@ def test_proofs_are_written_in_every_format_and_said(run, broken, tmp_path, caps
     code, found, err = told("check", broken, "--proof", log, "--json")
     assert (code, found["proof"], "cnf" in found) == (1, str(log), False)
     assert err == f"ninefold: wrote the proof {log}; `prove` confirms it\n"
-    assert told("prove", broken, log)[:2] == (0, "proved: 1 clauses confirmed\n")
+    assert told("prove", broken, log)[:2] == (0, "proved: 1 clause confirmed\n")
     code, found, err = told("check", broken, "--proof", drat, "--proof-format", "drat", "--json")
     assert (code, found["proof"], found["cnf"]) == (1, str(drat), str(drat.with_suffix(".cnf")))
     assert err == f"ninefold: wrote the proof {drat} and the formula {drat.with_suffix('.cnf')} that it refutes\n"

@@ -195,6 +195,10 @@ class TestTheory:
         assert (code, "None s" in text, "inconsistent" in text) == (3, False, False)
         code, found = run("check", tmp_path / "net.csv", "--calculus", tmp_path / "own.spec", "--json")
         assert (code, found["verdict"], found["kind"]) == (3, "unknown", "theory")
+        (tmp_path / "net.csv").write_text("a,relations,b\na,<,b\nb,<,c\nc,<,a\n")
+        code, text = run("check", tmp_path / "net.csv", "--calculus", tmp_path / "own.spec")
+        assert code == 1
+        assert "perhaps not minimal since nobody has shown that closure decides" in text
 
 
 class TestMinimalNetworks:

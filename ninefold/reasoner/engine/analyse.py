@@ -40,7 +40,7 @@ from .columns import (
 )
 from .explain import explain, explain_triangle_conflict, made_true_at
 
-__all__ = ["analyse", "minimise", "require"]
+__all__ = ["analyse", "conflict_premises", "minimise", "require", "rest_of_clause"]
 
 _LONGEST_PROOF = 60
 """Premises looked at in the attempt to drop one."""
@@ -114,11 +114,11 @@ def analyse(s):  # type: ignore[no-untyped-def]
                 young += require(edges, marks, trail, held, reg, out[k, 0], out[k, 1], start)
         t -= 1
     s.learnt[0, 0] = trail[t, EDGE]
-    return 1 + _rest_of_clause(marks, reg, s.activity, s.recent, held, s.learnt)
+    return 1 + rest_of_clause(marks, reg, s.activity, s.recent, held, s.learnt)
 
 
 @kernel(_nrt=False)
-def _rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore[no-untyped-def]
+def rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore[no-untyped-def]
     """List the pairs held, after the first; raise the activity of stated pairs, held or met on the way."""
     n = 0
     first = learnt[0, 0]

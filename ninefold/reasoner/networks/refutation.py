@@ -1,4 +1,4 @@
-"""Refutations that can be read: a closure proof, or a split into cases each of which is refuted.
+"""Refutations that can be read: a derivation by closure, or a split into cases each of which is refuted.
 
 This is for the few statements of a conflict, not for deciding: cases are split where that ends soonest, and the search
 gives up when the proof would be too long to be of use.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ninefold.encodings.calculus import Calculus
     from ninefold.encodings.encoding import Constraint
 
-    from .derivation import Proof
+    from .derivation import Derivation
 
 __all__ = ["Refutation", "refute"]
 
@@ -37,42 +37,42 @@ class Refutation:
 
     Attributes
     ----------
-    proof
-        Closure's proof, which ends in an empty relation; None where cases are split.
+    derivation
+        Closure's derivation, which ends in an empty relation; None where cases are split.
     pair
         The pair split, or None.
     cases
-        For each part of the pair's relation the refutation of the constraints with it. In their proofs the assumption
+        For each part of the pair's relation the refutation of the constraints with it. In their derivations the assumption
         is a source of its own, numbered from the number of constraints on, by depth.
     label
-        What was left of the pair, the union of the parts, and `ground`, the proof of it.
+        What was left of the pair, the union of the parts, and `ground`, the derivation of it.
     ground
-        Proof that nothing else is possible between the pair; None where there is nothing to prove.
+        Derivation that nothing else is possible between the pair; None where there is nothing to derive.
     """
 
-    proof: Proof | None = None
+    derivation: Derivation | None = None
     pair: tuple[int, int] | None = None
     cases: tuple[tuple[int, Refutation], ...] = ()
     label: int = 0
-    ground: Proof | None = None
+    ground: Derivation | None = None
 
     @property
     def sources(self) -> frozenset[int]:
         """Numbers of the constraints and assumptions used, those of cases among them."""
         used: frozenset[int] = frozenset()
-        for proof in (self.proof, self.ground):
-            used |= proof.sources if proof else frozenset()
+        for derivation in (self.derivation, self.ground):
+            used |= derivation.sources if derivation else frozenset()
         return used.union(*(case.sources for _, case in self.cases))
 
     @property
     def n_leaves(self) -> int:
-        """Number of closure proofs, 1 if no case was split."""
-        return 1 if self.proof else sum(case.n_leaves for _, case in self.cases)
+        """Number of derivations by closure, 1 if no case was split."""
+        return 1 if self.derivation else sum(case.n_leaves for _, case in self.cases)
 
     @property
     def depth(self) -> int:
         """How deep cases are split, 0 if not at all."""
-        return 0 if self.proof else 1 + max(case.depth for _, case in self.cases)
+        return 0 if self.derivation else 1 + max(case.depth for _, case in self.cases)
 
 
 class _TooLong(Exception):
@@ -85,9 +85,9 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
     Parameters
     ----------
     constraints
-        Triples (i, j, mask); their positions are the sources of the proofs.
+        Triples (i, j, mask); their positions are the sources of the derivations.
     most
-        Closure proofs to try before giving up.
+        Derivations to try before giving up.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
     closure = RecordedClosure(calculus, n)
     for source, (i, j, mask) in enumerate(constraints):
         if not closure.state(i, j, mask, source):
-            return Refutation(proof=closure.refutation())
+            return Refutation(derivation=closure.refutation())
     splitter = _Splitter(closure, constraints, most)
     try:
         return splitter.search(0)
@@ -120,7 +120,7 @@ class _Splitter:
             self._left -= 1
             if self._left < 0:
                 raise _TooLong
-            return Refutation(proof=closure.refutation())
+            return Refutation(derivation=closure.refutation())
         pair = self._choose(depth)
         if pair is None:
             return None
@@ -136,7 +136,7 @@ class _Splitter:
             if self._first + depth not in found.sources:
                 return found  # refuted without this case
             cases.append((part, found))
-        return Refutation(pair=pair, cases=tuple(cases), label=label, ground=closure.proof(*pair, label))
+        return Refutation(pair=pair, cases=tuple(cases), label=label, ground=closure.derivation(*pair, label))
 
     def _choose(self, depth: int) -> tuple[int, int] | None:
         """Return the stated pair to split, or None if closure has decided."""

@@ -31,12 +31,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted
 from ninefold.errors import BadInput
 
 from .conflicts import Conflict, Shrinker
 from .consistency import Consistent, Inconsistent, check
 from .deciding import undecided
 from .network import require_network
+from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
 __all__ = ["Repair", "repair"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Repair:
     """What to drop.
 
@@ -78,6 +80,15 @@ class Repair:
     def possible(self) -> bool:
         """Whether dropping statements that are not hard is enough."""
         return self.conflict is None
+
+    def __repr__(self) -> str:
+        calculus, n = self.network.calculus, self.network.n_statements
+        if self.conflict is not None:
+            return f"Repair(none: hard statements contradict each other: {told(calculus, self.conflict.statements)})"
+        if not self.drop:
+            return "Repair(nothing to drop: the network is consistent)"
+        cost = f"cost {self.cost:g}{'' if self.optimal else ', perhaps not the least'}"
+        return f"Repair(drop {len(self.drop)} of {counted(n, 'statement')}, {cost}: {told(calculus, self.drop)})"
 
     def repaired(self) -> Network:
         """Return the network without the dropped statements.
