@@ -3,19 +3,30 @@
 import numpy as np
 import pytest
 
+from ninefold._kernels import Kernel
 from ninefold.encodings import ALLEN, NP8, POINT, RCC5, RCC8
 from ninefold.reasoner.networks import _cores
 from ninefold.reasoner.networks._cores import OutOfTime
 from ninefold.reasoner.networks._parts import Part
-from ninefold.reasoner.networks.conflicts import Shrinker, conflict, part_of
+from ninefold.reasoner.networks.conflicts import conflict, part_of
 from ninefold.reasoner.networks.consistency import Consistent, Inconsistent, check
 from ninefold.reasoner.networks.network import Network
 from tests.oracle.network_reference import Reference, random_network
 
 CALCULI = [RCC8, RCC5, POINT, ALLEN]
 REFERENCES = {calculus.name: Reference(calculus) for calculus in CALCULI}
-COMPILED = 10**9
-"""Work so large that every kernel is compiled."""
+
+
+@pytest.fixture
+def compiled(monkeypatch):
+    """Every kernel compiled, however little there is to do."""
+    monkeypatch.setattr(Kernel, "for_work", lambda kernel, _: kernel.compiled)
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    """Every kernel plain."""
+    monkeypatch.setattr(Kernel, "for_work", lambda kernel, _: kernel.plain)
 
 
 def hard_network(n, degree, seed):
@@ -34,9 +45,10 @@ def parts(net, rng, count):
         yield sorted(rng.choice(net.n_statements, size, replace=False).tolist())
 
 
-@pytest.mark.parametrize("work", [0, COMPILED], ids=["plain", "compiled"])
+@pytest.mark.parametrize("form", ["plain", "compiled"])
 @pytest.mark.parametrize("calculus", CALCULI, ids=lambda calculus: calculus.name)
-def test_each_part_is_decided_and_each_core_is_a_refuted_part_of_it(calculus, work):
+def test_each_part_is_decided_and_each_core_is_a_refuted_part_of_it(calculus, form, request):
+    request.getfixturevalue(form)
     rng = np.random.default_rng(21)
     reference, cores, smaller = REFERENCES[calculus.name], 0, 0
     for at in range(25):
@@ -45,7 +57,7 @@ def test_each_part_is_decided_and_each_core_is_a_refuted_part_of_it(calculus, wo
         size = max(1.3, calculus.n_bases * 0.3)
         constraints = random_network(calculus, rng, n, n - 1.0, size, NP8.__contains__ if hard else lambda mask: True)
         net = Network.from_constraints(calculus, n, constraints)
-        part = Part(net.statements, calculus, decides=True, seed=at, work=work)
+        part = Part(net.statements, calculus, decides=True, seed=at)
         for chosen in parts(net, rng, 12):
             core = part.refute(chosen, None)
             solved = reference.solve(n, [constraints[k] for k in chosen])
@@ -58,12 +70,13 @@ def test_each_part_is_decided_and_each_core_is_a_refuted_part_of_it(calculus, wo
     assert cores > 20 < smaller
 
 
+@pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("seed", range(6))
 def test_clauses_handed_on_stay_true(seed):
     """Each search after the first begins with clauses of others; the answers are those of searches that have none."""
     rng = np.random.default_rng(seed)
     net = hard_network(24, 10.5, seed)
-    part = Part(net.statements, RCC8, decides=True, seed=0, work=COMPILED)
+    part = Part(net.statements, RCC8, decides=True, seed=0)
     refuted = 0
     for chosen in [list(range(net.n_statements)), *parts(net, rng, 15)]:
         if len(chosen) < net.n_statements // 2:
@@ -77,6 +90,7 @@ def test_clauses_handed_on_stay_true(seed):
     assert part.searched or not refuted
 
 
+@pytest.mark.usefixtures("compiled")
 def test_clean_ups_and_shortage_of_room_change_no_answer(monkeypatch):
     """Clauses are thrown away often, statements share bits of the sets, and every array is too small at first."""
     monkeypatch.setattr(_cores, "_REDUCE_FIRST", 10)
@@ -98,7 +112,7 @@ def test_clean_ups_and_shortage_of_room_change_no_answer(monkeypatch):
     monkeypatch.setattr(_cores.t, "new_trace", scarce)
     for seed in range(4):
         net = hard_network(80, 16, seed)
-        part = Part(net.statements, RCC8, decides=True, seed=seed, work=COMPILED)
+        part = Part(net.statements, RCC8, decides=True, seed=seed)
         core = part.refute(range(net.n_statements), None)
         verdict = check(net)
         assert isinstance(verdict, Consistent if core is None else Inconsistent)
@@ -122,12 +136,13 @@ def test_conflicts_of_hard_networks_are_minimal(n, degree, seed):
         assert isinstance(check(part_of(net, [x for x in found.indices if x != k])), Consistent)
 
 
-def test_the_same_seed_gives_the_same_conflict_plain_or_compiled():
+def test_the_same_seed_gives_the_same_conflict_plain_or_compiled(monkeypatch):
     net = hard_network(40, 16, 2)
-    first, again = conflict(net, seed=3), conflict(net, seed=3)
-    assert first.indices == again.indices
-    shrinker = Shrinker(net, 3, work=COMPILED)
-    assert tuple(shrinker.conflict(range(net.n_statements))[0]) == first.indices
+    found = []
+    for form in ("compiled", "plain", "compiled"):
+        monkeypatch.setattr(Kernel, "for_work", lambda kernel, _, form=form: getattr(kernel, form))
+        found.append(conflict(net, seed=3).indices)
+    assert found[0] == found[1] == found[2]
 
 
 def test_several_statements_about_one_pair():
@@ -166,6 +181,7 @@ def test_a_ring_is_minimal_without_a_search():
     assert found.minimal
 
 
+@pytest.mark.usefixtures("compiled")
 def test_time():
     net = hard_network(80, 16, 4)
     assert isinstance(check(net), Inconsistent)
@@ -173,7 +189,7 @@ def test_time():
     assert not found.minimal
     assert isinstance(check(found.to_network()), Inconsistent)
     with pytest.raises(OutOfTime):
-        Part(net.statements, RCC8, decides=True, seed=0, work=COMPILED).refute(range(net.n_statements), 0.0)
+        Part(net.statements, RCC8, decides=True, seed=0).refute(range(net.n_statements), 0.0)
 
 
 def test_a_calculus_that_nobody_has_studied_has_conflicts_not_known_to_be_minimal():

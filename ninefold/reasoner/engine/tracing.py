@@ -490,7 +490,7 @@ def state_traced(s, d, arcs, masks, rows):  # type: ignore[no-untyped-def]
     return FIXPOINT
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=8, _nrt=False)
 def close_traced(s, d, limit):  # type: ignore[no-untyped-def]
     """Close what is stated, at level 0; answers as `search_traced`, FIXPOINT instead of CONSISTENT."""
     while True:
@@ -505,7 +505,7 @@ def close_traced(s, d, limit):  # type: ignore[no-untyped-def]
         return _learn(s, d)
 
 
-@kernel(_nrt=False)
+@kernel(compile_seconds=8, _nrt=False)
 def search_traced(s, d, limit):  # type: ignore[no-untyped-def]
     """Search until an answer, `limit` in the register TICKS, or a shortage of room.
 

@@ -37,6 +37,8 @@ _HANDED_ON = 3000
 _PLAIN_SLICE = 1_000
 _FIRST_SLICE = 20_000
 _SLICE_SECONDS = 0.05
+_TICK_STEPS, _CONFLICT_STEPS = 7, 700
+"""Elementary steps for one of the register TICKS, and for a conflict and node."""
 _KEEP_LBD = 2
 _REDUCE_FIRST, _REDUCE_STEP = 2000, 500
 
@@ -93,8 +95,6 @@ class CoreSearch:
         (m,) bool: statements to be stated and closed before the others, so that a refutation rests on them by preference.
     seed
         Breaks ties: the same questions in the same order have the same answers.
-    work
-        Elementary steps done already for the same purpose; compiled code is used from `ninefold._kernels.COMPILE_ABOVE` on.
     """
 
     def __init__(
@@ -106,10 +106,8 @@ class CoreSearch:
         first: NDArray[np.bool_],
         *,
         seed: int = 0,
-        work: int = 0,
     ) -> None:
         m = len(arcs)
-        self.work = work
         self.conflicts = 0
         self._tables, self._frame = tables, frame
         self._arcs, self._masks, self._first = arcs, masks, first
@@ -124,6 +122,7 @@ class CoreSearch:
         self._slice = _FIRST_SLICE
         self._deadline: float | None = None
         self._reductions = 0
+        self._counted = 0
         self._state: State
         self._trace: t.Trace
 
@@ -174,6 +173,7 @@ class CoreSearch:
         gone = np.packbits(absent, bitorder="little").view(np.uint64)
         clauses = self._clauses.chosen(np.flatnonzero(~(self._clauses.sets & gone).any(axis=1)))
         self._state, self._trace = state, trace
+        self._counted = 0
         single = clauses.size == 1
         rows = self._keep_sets(clauses.sets)
         starts = np.cumsum(clauses.size) - clauses.size
@@ -206,12 +206,19 @@ class CoreSearch:
         status = self._run(t.state_traced, *arguments)
         return status == c.INCONSISTENT or self._run(t.close_traced) == c.INCONSISTENT
 
+    def _form(self, kernel: Any) -> Any:
+        """Run plain while the work is small; what was done since the last call counts, conflicts above all."""
+        reg = self._state.reg
+        done = _TICK_STEPS * int(reg[c.TICKS]) + _CONFLICT_STEPS * self._frame.n * int(reg[c.CONFLICTS])
+        new, self._counted = done - self._counted, done
+        return kernel.for_work(new)
+
     def _run(self, kernel: Any, *arguments: Any) -> int:
         """Run a kernel until it has an answer, making room and looking at the clock."""
         while True:
             reg = self._state.reg
             done = int(reg[c.TICKS])
-            form = kernel.for_work(10 * (self.work + done) + self._frame.n_edges)
+            form = self._form(kernel)
             begin = time.perf_counter()
             rest = arguments or (done + (_PLAIN_SLICE if form is kernel.plain else self._slice),)
             new = form is not kernel.plain and not form.signatures
@@ -298,7 +305,7 @@ class CoreSearch:
         self._trace.clause_set[:count] = rows
         state.reg[c.N_CLAUSES], state.reg[c.ARENA_TOP] = count, total
         state.edges[:, c.WATCH] = -1
-        t.attach_all.for_work(10 * (self.work + int(state.reg[c.TICKS])) + self._frame.n_edges)(state)
+        self._form(t.attach_all)(state)
 
     def _present(self) -> tuple[_Clauses, NDArray[np.int32]]:
         """Return the clauses of the state and the rows of their sets."""
@@ -327,8 +334,7 @@ class CoreSearch:
         reg[c.REDUCE_AT] = reg[c.CONFLICTS] + _REDUCE_FIRST + _REDUCE_STEP * self._reductions
 
     def _detached(self) -> bool:
-        run = t.detach_root.for_work(10 * (self.work + int(self._state.reg[c.TICKS])) + self._frame.n_edges)
-        return bool(run(self._state, self._trace))
+        return bool(self._form(t.detach_root)(self._state, self._trace))
 
     def _hand_on(self) -> None:
         """Keep for the next search what this one learned, with what it was handed and could not use."""
@@ -340,7 +346,6 @@ class CoreSearch:
         old = self._clauses.chosen(np.flatnonzero(self._clauses.size == 1))
         self._clauses = old.with_more(new).with_more(learned).best(_HANDED_ON)
         self._activity = state.activity.copy()
-        self.work += int(state.reg[c.TICKS])
         self.conflicts += int(state.reg[c.CONFLICTS])
 
 

@@ -38,11 +38,9 @@ class Part:
         has no cycle need no search: from one entity to the next each of them can be satisfied.
     seed
         Breaks ties of the search.
-    work
-        Elementary steps that were done before for the same purpose.
     """
 
-    def __init__(self, statements: Sequence[Statement], calculus: Calculus, *, decides: bool, seed: int, work: int) -> None:
+    def __init__(self, statements: Sequence[Statement], calculus: Calculus, *, decides: bool, seed: int) -> None:
         index: dict[str, int] = {}
         for s in statements:
             index.setdefault(s.a, len(index))
@@ -62,17 +60,12 @@ class Part:
         masks = np.array([s.mask for s in statements], dtype=np.int16)
         hard = np.array([s.hard for s in statements], dtype=bool)
         arcs = frame.arcs(ends[:, 0], ends[:, 1])
-        self._search = CoreSearch(Tables.of(calculus), frame, arcs, masks, hard, seed=seed, work=work)
+        self._search = CoreSearch(Tables.of(calculus), frame, arcs, masks, hard, seed=seed)
 
     @property
     def searched(self) -> bool:
         """Whether closure was not enough so far."""
         return self._search.conflicts > 0
-
-    @property
-    def work(self) -> int:
-        """Elementary steps that were done, those before this part among them."""
-        return self._search.work
 
     def refute(self, rest: Sequence[int], deadline: float | None) -> list[int] | None:
         """Return which of some statements, by their indices, a refutation of these rests on; None if there is none.

@@ -176,20 +176,15 @@ class Shrinker:
     soft_only
         Leave hard statements where they are: they count as part of the conflict, all of them, and are never left out. A
         repair, which drops soft statements only, has no use for knowing which of the hard ones take part.
-    work
-        Elementary steps that were done before for the same purpose; many of them make compiled code pay.
     """
 
-    def __init__(
-        self, net: Network, seed: int = 0, deadline: float | None = None, *, soft_only: bool = False, work: int = 0
-    ) -> None:
+    def __init__(self, net: Network, seed: int = 0, deadline: float | None = None, *, soft_only: bool = False) -> None:
         self._net = net
         self._seed = seed
         self._deadline = deadline
         self._soft_only = soft_only
         self._statements = net.statements
         self._decides = theory_of(net.calculus).closure_decides
-        self._work = work
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
         """Return a conflict among statements `indices`, and whether it is minimal; None if there is none.
@@ -220,7 +215,7 @@ class Shrinker:
         if used is not None:
             return used
         part = self._part(given)
-        used = self._refuted(part, given, deadline)
+        used = part.refute(given, deadline)
         if used is None:
             return None
         used = self._with_hard(given, used)
@@ -230,7 +225,7 @@ class Shrinker:
         for more in range(1, _ROUNDS if part.searched else 0):
             before = used
             try:
-                fewer = self._refuted(self._part(used, more), used, self._deadline)
+                fewer = self._part(used, more).refute(used, self._deadline)
             except OutOfTime:
                 break
             if fewer is None:
@@ -254,7 +249,7 @@ class Shrinker:
                 raise _Late(used)
             rest = [x for x in used if x != k]
             try:
-                fewer = self._refuted(part, rest, self._deadline)
+                fewer = part.refute(rest, self._deadline)
             except OutOfTime:
                 raise _Late(used) from None
             if fewer is not None:
@@ -267,14 +262,7 @@ class Shrinker:
     def _part(self, indices: Sequence[int], more: int = 0) -> Part:
         """Lay out some statements for the search."""
         chosen = [self._statements[k] for k in indices]
-        return Part(chosen, self._net.calculus, decides=self._decides, seed=self._seed + more, work=self._work)
-
-    def _refuted(self, part: Part, rest: Sequence[int], deadline: float | None) -> list[int] | None:
-        """Return what a refutation of some statements rests on, or None; compiled code pays by what all parts cost."""
-        try:
-            return part.refute(rest, deadline)
-        finally:
-            self._work = part.work
+        return Part(chosen, self._net.calculus, decides=self._decides, seed=self._seed + more)
 
     def _recorded(self, kept: Sequence[int]) -> list[int] | None:
         """Return the statements closure needs to refute `kept`, fewer at every round; None if it does not."""
