@@ -1,4 +1,7 @@
-"""Conflicts, inference, repair and drawings of networks of a few hundred regions. Limits: 5 s a conflict, 10 s a drawing."""
+"""Conflicts, inference, repair and drawings of networks of a few hundred regions.
+
+Limits: 5 s a conflict, 20 s a conflict of a network on which closure does not decide, 1 s a ring, 10 s a drawing.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ import numpy as np
 import shapely
 
 from benchmarks.clock import row, title
+from benchmarks.networks import uniform
 from ninefold.encodings import RCC8
 from ninefold.layout.realization import realize
 from ninefold.reasoner.networks.conflicts import conflict
@@ -75,6 +79,14 @@ def chain(n: int, statements: int, seed: int) -> Network:
     return net
 
 
+def ring(n: int) -> Network:
+    """Boxes each inside the next, the last inside the first."""
+    net = Network(RCC8)
+    for k in range(n):
+        net.add(f"r{k}", f"r{(k + 1) % n}", "inside")
+    return net
+
+
 def timed(job: Callable[[], Any]) -> tuple[float, Any]:
     begin = time.perf_counter()
     result = job()
@@ -96,6 +108,23 @@ def main() -> None:
             continue
         words, text = timed(lambda found=found: explain(found))
         row(name, f"{seconds:.2f} s", len(found), text.cases, f"{words:.2f} s")
+
+    conflict(uniform(60, 16, 0, hard=True))  # compile
+    title("minimal conflict, closure does not decide", "seconds", "statements", "asked")
+    for seed in range(4):
+        net = uniform(100, 16, seed, hard=True)
+        seconds, found = timed(lambda net=net: conflict(net, budget=120))
+        kind = "" if found is None or found.minimal else " (budget spent)"
+        row(f"H n=100 d=16, seed {seed}", f"{seconds:.2f} s{kind}", "-" if found is None else len(found), "20 s")
+
+    net = ring(401)
+    title("a ring of 401 NTPP", "seconds", "statements", "asked")
+    seconds, found = timed(lambda: conflict(net))
+    row("conflict", f"{seconds:.2f} s", len(found), "1 s")
+    seconds, text = timed(lambda: explain(found))
+    row("explain the conflict", f"{seconds:.2f} s", len(text.lines), "1 s")
+    seconds, repaired = timed(lambda: repair(net))
+    row("repair", f"{seconds:.2f} s", len(repaired.drop), "1 s")
 
     title("realize, every pair confirmed by GEOS", "seconds", "pieces")
     for name, scenario in (

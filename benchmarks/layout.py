@@ -55,6 +55,18 @@ def half(n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return points, edges[np.random.default_rng(seed + 1).random(len(edges)) < 0.5]
 
 
+def star(spokes: int) -> PlaneMap:
+    leaves = [str(k) for k in range(1, spokes + 1)]
+    return PlaneMap.from_rotation({"0": leaves, **{leaf: ["0"] for leaf in leaves}})
+
+
+def grid(side: int) -> PlaneMap:
+    points = [(x, y) for y in range(side) for x in range(side)]
+    edges = [(y * side + x, y * side + x + 1) for y in range(side) for x in range(side - 1)]
+    edges += [(y * side + x, (y + 1) * side + x) for y in range(side - 1) for x in range(side)]
+    return PlaneMap.from_geometry(points, edges)
+
+
 def main() -> None:
     schnyder(PlaneMap.from_geometry(*triangulation(20_000)))
     schnyder(PlaneMap.from_geometry(*half(20_000)))
@@ -90,6 +102,20 @@ def main() -> None:
         for name, make in (("triangulation", triangulation), ("half", half)):
             plane = PlaneMap.from_geometry(*make(n))
             row(f"{n:,} vertices, {name}", f"{best(lambda p=plane: tutte(p), repeat=1):.2f}", tutte(plane).layout)
+
+    title("Vertices of high degree, and thin pieces", "seconds", "layout", "check", "verify, 50 pairs")
+    for name, plane in (
+        ("star of 4,000", star(4_000)),
+        ("star of 50,000", star(50_000)),
+        ("grid of 101 x 101", grid(101)),
+    ):
+        drawing = tutte(plane)
+        row(
+            name,
+            *(f"{best(lambda p=plane: tutte(p), repeat=1):.2f}", drawing.layout),
+            f"{best(lambda d=drawing: drawing_problems(d), repeat=1):.2f} s",
+            f"{best(lambda p=plane: verify(p, n_pairs=50), repeat=1):.2f} s",
+        )
 
     title("The oracle, 10,000 pairs", "edges", "draw", "check", "all", "agree")
     for name, plane in (

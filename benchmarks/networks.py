@@ -127,10 +127,46 @@ def main() -> None:
         "3 s",
     )
 
+    scenario_times()
+
     if not (FOLDER / "answers.csv").is_file():
         print("\nno folder with recorded networks; set NINEFOLD_NETWORKS to compare with GQR")
         return
     recorded()
+
+
+def scenario_times() -> None:
+    """A scenario beside the check that it comes from, and questions about pairs that no completion holds; CPU time."""
+    title("scenarios, warm, CPU time", "check", "scenario", "pairs kept", "1,000 pairs", "asked")
+    families = (
+        ("H n=100 d=14", lambda seed: uniform(100, 14, seed, hard=True), "+ 1 s"),
+        ("BH m=2 n=500", lambda seed: preferential(500, 2, seed), "+ 1 s"),
+        ("BH m=1 n=10,000", lambda seed: preferential(10_000, 1, seed), "no table"),
+        ("BH m=2 n=10,000", lambda seed: preferential(10_000, 2, seed), "no table"),
+    )
+    for name, family, asked in families:
+        net, verdict, took = None, None, 0.0
+        for seed in range(50):
+            net = family(seed)
+            net.constraints()
+            begin = time.process_time()
+            verdict = check(net, budget=CAP)
+            took = time.process_time() - begin
+            if isinstance(verdict, Consistent):
+                break
+        assert net is not None
+        assert isinstance(verdict, Consistent)
+        begin = time.process_time()
+        scenario = verdict.scenario
+        made = time.process_time() - begin
+        pairs = np.random.default_rng(0).integers(0, net.n_entities, (1000, 2)).tolist()
+        begin = time.process_time()
+        for a, b in pairs:
+            scenario.relation(a, b)
+        answered = time.process_time() - begin
+        assert scenario.satisfies(net)
+        kept = verdict.decision.witness.frame.n_edges if verdict.decision.witness else 0
+        row(name, f"{took:.3f} s", f"{made:.3f} s", f"{kept:,}", f"{answered:.2f} s", asked)
 
 
 def recorded() -> None:

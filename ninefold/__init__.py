@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from . import encodings, errors, io, layout, mapping, reasoner
     from .errors import NinefoldError
     from .io.atlas.atlas import Atlas
-    from .io.formats import read_map
+    from .io.maps import read_map
     from .io.networks.network_file import read_network
     from .io.walks.json_lines import read_walk
     from .layout.layouts import draw
@@ -63,7 +63,7 @@ __getattr__, __dir__ = attach(
     {
         "errors": ("NinefoldError",),
         "io.atlas.atlas": ("Atlas",),
-        "io.formats": ("read_map",),
+        "io.maps": ("read_map",),
         "io.networks.network_file": ("read_network",),
         "io.walks.json_lines": ("read_walk",),
         "layout.layouts": ("draw",),

@@ -14,6 +14,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from ._wording import LONGEST_QUOTE, quoted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -28,8 +30,10 @@ __all__ = [
     "NotACycle",
     "NotPlane",
     "TooLarge",
+    "Undecided",
     "UnknownName",
     "WalkError",
+    "located",
 ]
 
 
@@ -38,7 +42,22 @@ class NinefoldError(Exception):
 
 
 class BadInput(NinefoldError, ValueError):
-    """A value, file or argument that cannot be what it has to be."""
+    """A value, file or argument that cannot be what it has to be.
+
+    Attributes
+    ----------
+    event
+        The number of the event of a walk that it is about, counted from 1, or None.
+    reason
+        The message without the place that stands before it.
+    """
+
+    event: int | None = None
+    reason: str = ""
+
+    def __init__(self, *message: object) -> None:
+        super().__init__(*message)
+        self.reason = str(self)
 
 
 class UnknownName(NinefoldError, KeyError):
@@ -49,15 +68,16 @@ class UnknownName(NinefoldError, KeyError):
     kind, name
         What was looked up ("vertex", "edge", "set", ...) and the name given.
     near
-        Up to three existing names that look alike.
+        Up to three existing names that look alike; or what is known to be meant.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str] = ()) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str] = (), *, meant: str | None = None) -> None:
         self.kind = kind
         self.name = name
-        self.near = tuple(get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5))
-        hint = f"; did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
-        self.message = f"there is no {kind} named {name!r}{hint}"
+        near = get_close_matches(name, list(known)[:100_000], n=3, cutoff=0.5) if len(name) <= LONGEST_QUOTE else []
+        self.near = (meant,) if meant else tuple(near)
+        hint = f"; did you mean {' or '.join(map(quoted, self.near))}?" if self.near else ""
+        self.message = f"there is no {kind} named {quoted(name)}{hint}"
         super().__init__(self.message)
 
     def __str__(self) -> str:
@@ -109,6 +129,29 @@ class WalkError(BadInput):
     def __init__(self, message: str, *, where: str = "") -> None:
         super().__init__(f"{where}: {message}" if where else message)
         self.where = where
+        self.reason = message
+
+
+def located(error: BadInput, where: str, *, event: int | None = None) -> BadInput:
+    """Return the same error of a walk with the place where it happened before its message, in place of any other.
+
+    Parameters
+    ----------
+    where
+        Such as ``"event 7"``, or file and line.
+    event
+        The number of the event, where it is known; otherwise that of `error` stays.
+    """
+    found: BadInput
+    if isinstance(error, NotPlane):
+        found = NotPlane(f"{where}: {error.reason}", genus=error.genus, edges=error.edges)
+    elif isinstance(error, AmbiguousDart):
+        found = AmbiguousDart(f"{where}: {error.reason}")
+    else:
+        found = WalkError(error.reason, where=where)
+    found.reason = error.reason
+    found.event = error.event if event is None else event
+    return found
 
 
 class AtlasError(NinefoldError, OSError):
@@ -117,6 +160,22 @@ class AtlasError(NinefoldError, OSError):
 
 class TooLarge(NinefoldError, MemoryError):
     """A request that cannot fit; the message says how much it would take."""
+
+
+class Undecided(NinefoldError, RuntimeError):
+    """Scenarios or a repair were asked for, and whether the network is consistent is not known.
+
+    ``check`` answers `Unknown` there; an iterator of scenarios has no such answer to give.
+
+    Attributes
+    ----------
+    kind
+        ``"time"`` where a budget was spent, ``"theory"`` where nobody has shown how to decide the calculus.
+    """
+
+    def __init__(self, message: str, *, kind: str) -> None:
+        super().__init__(message)
+        self.kind = kind
 
 
 class MissingExtra(NinefoldError, ImportError):

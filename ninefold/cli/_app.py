@@ -10,21 +10,21 @@ __all__ = ["app"]
 
 # In the order of the help text: function, name, and what it does in a few words.
 _COMMANDS = (
-    (demo.demo, "demo", "The main job on real streets, end to end."),
-    (explore.explore, "explore", "Simulate a robot's exploration of a source with geometry."),
-    (atlas.map_source, "map", "Build the atlas of a walk, or of a source with geometry."),
+    (demo.demo, "demo", "Walk, map and compare real streets, end to end."),
+    (explore.explore, "explore", "Let a simulated robot explore a world and log its walk."),
+    (atlas.map_source, "map", "Build a map from a walk log or from geometry."),
     (atlas.info, "info", "Show what an atlas holds."),
-    (atlas.name, "name", "Store a named set."),
-    (relate.relate, "relate", "One relation, or a table of all."),
+    (atlas.name, "name", "Give a place, path or region a name."),
+    (relate.relate, "relate", "Tell how two sets lie to each other, or all of them."),
     (pictures.draw, "draw", "Draw the map."),
-    (pictures.verify, "verify", "Hold symbolic answers against geometry."),
-    (networks.check, "check", "Is a relation network consistent?"),
-    (networks.prove, "prove", "Confirm a proof of inconsistency."),
-    (networks.infer, "infer", "Which relations are feasible between two entities?"),
-    (networks.ask, "ask", "Is a formula entailed, possible or impossible?"),
-    (networks.repair, "repair", "The cheapest statements to drop."),
-    (networks.scenarios, "scenarios", "The scenarios of a network, one after another."),
-    (networks.compose, "compose", "Compose two relations."),
+    (pictures.verify, "verify", "Check a map and its relations on a drawing."),
+    (networks.check, "check", "Can declared relations all be true?"),
+    (networks.prove, "prove", "Confirm a proof that they cannot."),
+    (networks.infer, "infer", "Which relations are possible between two things?"),
+    (networks.ask, "ask", "Does a formula follow, is it possible, or not?"),
+    (networks.repair, "repair", "The cheapest statements to drop so that the rest can be true."),
+    (networks.scenarios, "scenarios", "List the ways in which all can be true."),
+    (networks.compose, "compose", "What x R y and y S z leave between x and z."),
 )
 
 # Plain help text: loading rich would cost more than everything else that `--help` does.

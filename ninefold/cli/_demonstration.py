@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._files import write_text
 from ninefold.errors import BadInput
 from ninefold.io import samples
 from ninefold.io.atlas.atlas import Atlas
@@ -195,10 +196,10 @@ def run_demo(
     with _timed(seconds, "draw"):
         shown = _shown(named)
         known = f"{source}, as the robot knows it: no coordinates"
-        draw(plane, layout="tutte").save(map_file, highlight=shown, title=known)
+        draw(plane).save(map_file, highlight=shown, title=known)
         draw(plane, layout="schnyder").save(grid_file, highlight=shown, title=known)
         ground.save(streets_file, highlight=shown, title=f"{source}, on the ground")
-        figure_file.write_text(_figure_eight(), encoding="utf-8")
+        write_text(figure_file, _figure_eight(), force=True)
     say("Drew three of the sets on the map, in both layouts, and on the ground; and figure 8 beside its Schnyder drawing.")
     return DemoReport(
         source=source,

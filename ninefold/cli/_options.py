@@ -12,10 +12,15 @@ AtlasPath = Annotated[
     Path, typer.Argument(metavar="ATLAS", help="An atlas file, made by `ninefold map`.", show_default=False)
 ]
 DropCrossing = Annotated[
-    bool, typer.Option("--drop-crossing", help="Drop edges that meet others without a vertex, as few as seems possible.")
+    bool,
+    typer.Option("--drop-crossing", help="Leave out edges that cross others where no place is; few, and it says which."),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Replace what is there.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace a file or a name that is there already.")]
 SourceText = Annotated[
     str,
-    typer.Argument(metavar="SOURCE", help="A file, or sample:NAME for a bundled world.", show_default=False),
+    typer.Argument(
+        metavar="SOURCE",
+        help="A walk log, lines in GeoJSON, or sample:NAME for a world that comes with it.",
+        show_default=False,
+    ),
 ]

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
 from ._output import notes, print_json, progress
 
@@ -21,23 +23,24 @@ def map_source(
     *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="ATLAS", help="The atlas to write.", show_default=False)],
     tolerance: Annotated[
-        float | None, typer.Option(help="For a walk, instead of its header's: radians within which headings are one.")
+        float | None,
+        typer.Option(help="For a walk: headings that differ by less, in radians, count as one. Left out, the log says."),
     ] = None,
     drop_crossing: DropCrossing = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Build the atlas of a walk log or of a source with geometry, whose coordinates are dropped."""
+    """Build a map from a walk log, or from lines with geometry whose coordinates are then dropped, and keep it."""
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
-    from ninefold.io.formats import format_of
+    from ninefold.io.formats import recognise
 
-    kind = format_of(source)
+    kind = recognise(source).name
     if kind == "atlas":
         raise BadInput(f"{source}: an atlas already; `ninefold info` shows what is in it")
     if kind == "walk" and drop_crossing:
         raise BadInput("--drop-crossing is for sources with geometry, and a walk has none")
-    if kind == "source" and tolerance is not None:
+    if kind != "walk" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
     refuse_existing(out, force=force)
     if out.exists() and not source.startswith("sample:") and out.samefile(source):
@@ -58,16 +61,19 @@ def map_source(
 
 
 def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:
-    from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
+    from ninefold.errors import BadInput
     from ninefold.io import Atlas, Provenance, read_walk
     from ninefold.io.walks.heading_units import doubts
+    from ninefold.io.walks.mapped import by_line
 
     walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
     try:
-        return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
-    except (AmbiguousDart, NotPlane, WalkError) as error:  # they tell the event, not the file
-        reason = "; ".join([str(error), *doubts(walk)])
-        raise BadInput(f"{source}: {reason}") from None
+        with by_line(source):
+            return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
+    except BadInput as error:
+        if error.event is None:
+            raise
+        raise BadInput("; ".join([str(error), *doubts(walk)])) from None
 
 
 def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) -> "Atlas":
@@ -83,7 +89,7 @@ def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) ->
 
 
 def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
-    """Show counts, outer face, checks, named sets and provenance of an atlas."""
+    """Show what an atlas holds: the size of its map, what was checked, the named sets, and where it all came from."""
     from ninefold.io import Atlas
 
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
@@ -115,7 +121,9 @@ def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
 
 def name(
     atlas: AtlasPath,
-    set_name: Annotated[str, typer.Argument(metavar="NAME", help="Any text without a colon.", show_default=False)],
+    set_name: Annotated[
+        str, typer.Argument(metavar="NAME", help="The name to give it: any text without a colon.", show_default=False)
+    ],
     set_text: Annotated[
         str,
         typer.Argument(
@@ -129,7 +137,7 @@ def name(
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Store a set under a name."""
+    """Store a place, a path or a region of the map under a name."""
     from ninefold.io import Atlas
 
     with progress(f"reading {atlas}"), Atlas.open(atlas) as found:
@@ -137,7 +145,7 @@ def name(
     if as_json:
         print_json({"name": set_name, "set": set_text, "kind": type(item).__name__.lower(), "dimension": item.dimension})
     else:
-        print(f"{set_name}: {item!r}")
+        print(f"{set_name}: {item!r}, stored in {atlas}")
     return 0
 
 
@@ -178,7 +186,8 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     outer = facts["outer_edges"]
     print(f"{facts['file']}: {_described(plane)}")
     print(
-        f"outer face   {facts['outer_face']}, along {len(outer)} edges{': ' + ', '.join(outer[:6]) if outer else ''}"
+        f"outer face   {facts['outer_face']}, along {counted(len(outer), 'edge')}"
+        f"{': ' + ', '.join(outer[:6]) if outer else ''}"
         f"{', ...' if len(outer) > 6 else ''}"
     )
     print(f"dead ends    {facts['dead_ends']}")
@@ -192,14 +201,12 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         )
     )
     print(f"checks       V - E + F is right; {turning}")
-    events = f", {facts['events']:,} events" if facts["origin"] == "walk" else ""
+    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
     print(f"made from    a {facts['origin']}{events}")
     for record in facts["provenance"]:
         print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
     named = facts["names"]
-    kinds = ", ".join(
-        f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in sorted(Counter(named.values()).items())
-    )
+    kinds = ", ".join(counted(count, kind) for kind, count in sorted(Counter(named.values()).items()))
     shown = ", ".join(list(named)[:8]) + (", ..." if len(named) > 8 else "")
     print(f"named sets   {kinds}: {shown}" if named else "named sets   none")
     if facts["statements"]:

@@ -15,7 +15,9 @@ __all__ = ["demo"]
 def demo(
     *,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for what the demo writes.")] = Path("demo-out"),
-    seed: Annotated[int, typer.Option(min=0, help="Of the robot's choices and of the sets and pairs drawn.")] = 1,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Seed of the robot's choices and of the sets and pairs that are compared.")
+    ] = 1,
     pairs: Annotated[
         int, typer.Option(min=1, max=1_000_000, help="How many pairs of sets to compare with shapely.")
     ] = 20_000,

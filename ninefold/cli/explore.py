@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from ninefold._wording import counted, quoted
+
 from ._options import AsJson, DropCrossing, Force, SourceText
 from ._output import note, notes, print_json, progress
 
@@ -17,21 +19,27 @@ def explore(
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="WALK", help="The walk log to write (.jsonl).", show_default=False)
     ],
-    start: Annotated[str | None, typer.Option(help="First place; left out, one of the largest component.")] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Of the order of exits and the noise; left out, no chance.")
+    start: Annotated[
+        str | None, typer.Option(help="The place to begin at; left out, one in the largest connected part.")
     ] = None,
-    noise: Annotated[float, typer.Option(min=0.0, help="Standard deviation of the heading, radians.")] = 0.0,
-    step: Annotated[float, typer.Option(help="Metres between samples.")] = 1.0,
-    exits: Annotated[bool, typer.Option("--exits/--no-exits", help="Log the exits of every place.")] = True,
-    tolerance: Annotated[float | None, typer.Option(help="For the header: radians within which headings are one.")] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of random choices; left out, exits are taken in a fixed order.")
+    ] = None,
+    noise: Annotated[float, typer.Option(min=0.0, help="Standard deviation of the error of a heading, in radians.")] = 0.0,
+    step: Annotated[float, typer.Option(help="Metres between two samples of the heading.")] = 1.0,
+    exits: Annotated[
+        bool, typer.Option("--exits/--no-exits", help="Whether the log tells the exits seen at every place.")
+    ] = True,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Written into the log: headings that differ by less, in radians, count as one.")
+    ] = None,
     drop_crossing: DropCrossing = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Simulate a robot that explores a source depth-first, every place and every way, and write its walk log."""
+    """Let a simulated robot visit every place and walk every way of a source, and write the log of its walk."""
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.io.sources.reading import read_source
     from ninefold.io.walks.json_lines import write_walk
 
@@ -52,11 +60,10 @@ def explore(
     warnings = list(found.notes)
     missed = sum(map(len, robot.unreached))
     if missed:
-        count = len(robot.unreached)
-        parts = "1 other component" if count == 1 else f"{count:,} other components"
         warnings.append(
-            f"{missed:,} of {found.n_vertices:,} places are in {parts} that cannot be reached from {robot.start!r}, "
-            f"the first with {robot.unreached[0][0]!r}; --start begins elsewhere"
+            f"{missed:,} of {counted(found.n_vertices, 'place')} cannot be reached from {quoted(robot.start)}: they are in "
+            f"{counted(len(robot.unreached), 'other component')}, the first with {quoted(robot.unreached[0][0])}; --start "
+            "begins elsewhere"
         )
     if as_json:
         print_json(
@@ -75,9 +82,9 @@ def explore(
         )
     else:
         notes(warnings)
-        note(f"no crossing without a vertex in {found.n_edges:,} edges")
+        note(f"no crossing without a vertex in {counted(found.n_edges, 'edge')}")
         print(
-            f"{out}: {found.n_vertices - missed:,} places, {robot.walk.n_legs:,} legs, {robot.metres:,.0f} m, "
-            f"{len(robot.walk.events):,} events, from {robot.start!r}"
+            f"{out}: {counted(found.n_vertices - missed, 'place')}, {counted(robot.walk.n_legs, 'leg')}, "
+            f"{robot.metres:,.0f} m, {counted(len(robot.walk.events), 'event')}, from {quoted(robot.start)}"
         )
     return 0

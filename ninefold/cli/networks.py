@@ -5,31 +5,41 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, Force
 from ._output import note, notes, print_json, progress
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
-    from ninefold.reasoner.networks.network import Network, Statement
+    from ninefold.reasoner.networks.network import Network
+    from ninefold.reasoner.networks.proofs import Proof
     from ninefold.reasoner.networks.scenario import Scenario
+    from ninefold.reasoner.networks.statement import Statement
 
 __all__ = ["ask", "check", "compose", "infer", "prove", "repair", "scenarios"]
 
 YES, NO, SPENT = 0, 1, 3
 
+PROOF_FORMATS = ("native", "drat", "lrat")
+
 LISTED = 1000
 """Entities up to which ``check --json`` writes the scenario out; it holds every pair."""
 
 NetPath = Annotated[
-    Path, typer.Argument(metavar="NET", help="A network: .csp, .csv or .json.", show_default=False)
+    Path, typer.Argument(metavar="NET", help="A file of declared relations: .csp, .csv or .json.", show_default=False)
 ]  # fmt: skip
 CalculusName = Annotated[
     str | None,
-    typer.Option("--calculus", help="rcc8, rcc5, point, allen or a .spec file, where NET does not say.", show_default=False),
+    typer.Option(
+        "--calculus",
+        help="rcc8, rcc5, point, allen or a .spec file; needed where NET is not in rcc8 and does not say.",
+        show_default=False,
+    ),
 ]
 Budget = Annotated[float | None, typer.Option(min=0.001, help="Seconds after which to give up.", show_default=False)]
-Seed = Annotated[int, typer.Option(min=0, help="Of the search; the same seed gives the same run.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of random choices; the same seed gives the same answer.")]
 
 
 def check(
@@ -46,14 +56,17 @@ def check(
     proof: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Keep a proof of an inconsistency, for `prove`.", show_default=False)
     ] = None,
+    proof_format: Annotated[
+        str, typer.Option(metavar="native|drat|lrat", help="drat and lrat, for other checkers, also write LOG's .cnf.")
+    ] = "native",
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
     """Decide whether a network is consistent, and show a scenario or a minimal conflict."""
     import time
 
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import published, refuse_existing
     from ninefold.reasoner.networks.consistency import Consistent, Inconsistent
     from ninefold.reasoner.networks.consistency import check as decide
 
@@ -61,14 +74,22 @@ def check(
         if draw.suffix.lower() != ".svg":
             raise BadInput(f"{draw}: pictures are SVG; name a file that ends in .svg")
         refuse_existing(draw, force=force)
-    if proof is not None:
-        refuse_existing(proof, force=force)
+    proof_files = _proof_files(proof, proof_format)
+    for file in proof_files:
+        refuse_existing(file, force=force)
     network = _read(net, calculus)
     begin = time.perf_counter()
     with progress(f"deciding {net}"):
         verdict = decide(network, budget=budget, method=method, proof=proof is not None, seed=seed)
     seconds = time.perf_counter() - begin
-    report: dict[str, Any] = {"verdict": "unknown", "seconds": round(seconds, 6), "scenario": None, "conflict": None}
+    compiling = verdict.decision.compiling
+    report: dict[str, Any] = {
+        "verdict": "unknown",
+        "seconds": round(seconds, 6),
+        "compiling": round(compiling, 6),
+        "scenario": None,
+        "conflict": None,
+    }
     text = ""
     code = SPENT
     if isinstance(verdict, Consistent):
@@ -80,20 +101,25 @@ def check(
         if draw is not None:
             _draw(verdict.scenario, draw, title=net.stem, force=force)
             report["drawing"] = str(draw)
+            text += f"\n{draw}: a drawing of {counted(network.n_entities, 'region')}, checked pair by pair"
     elif isinstance(verdict, Inconsistent):
         report["verdict"], code, text = "inconsistent", NO, f"inconsistent ({_counts(network)}, {seconds:.3g} s)"
         if not no_conflict:
-            left = None if budget is None else max(budget - seconds, 0.0)
+            left = None if budget is None else max(budget - (seconds - compiling), 0.0)
             why = _conflict(network, seed, left)
             report["conflict"] = why[0]
             text = f"{text}\n{why[1]}"
-        if proof is not None and verdict.proof is not None:
-            with published(proof, force=force) as file:
-                file.write_text(verdict.proof.to_text(), encoding="ascii")
-            report["proof"] = str(proof)
+        if verdict.proof is not None:
+            with progress("writing the proof"):
+                _write_proof(network, verdict.proof, proof_format, proof_files, force=force)
+            report |= zip(("proof", "cnf"), map(str, proof_files), strict=False)
     else:
-        report["reason"] = verdict.reason
+        report["reason"], report["kind"] = verdict.reason, verdict.kind
         text = f"unknown: {verdict.reason}"
+    if proof is not None and code != NO:
+        note(
+            f"no proof: {'the network is consistent' if code == YES else 'whether the network is consistent is not decided'}"
+        )
     if draw is not None and code != YES:
         note("nothing was drawn: only a consistent network has a drawing")
     _print(report, text, as_json=as_json)
@@ -107,7 +133,7 @@ def prove(
     calculus: CalculusName = None,
     as_json: AsJson = False,
 ) -> int:
-    """Confirm, in plain Python and clause by clause, a proof that a network is inconsistent."""
+    """Confirm, clause by clause and without the search, a proof that a network is inconsistent."""
     from ninefold.errors import BadInput
     from ninefold.reasoner.networks.proofs import Proof
     from ninefold.reasoner.networks.proofs import prove as confirm
@@ -120,7 +146,7 @@ def prove(
     except BadInput as error:
         raise BadInput(f"{log}: {error}") from None
     try:
-        with progress(f"confirming {len(proof.clauses):,} clauses"):
+        with progress(f"confirming {counted(len(proof.clauses), 'clause')}"):
             confirm(network, proof)
     except BadInput as error:
         _print(
@@ -128,7 +154,9 @@ def prove(
         )
         return NO
     _print(
-        {"proved": True, "clauses": len(proof.clauses)}, f"proved: {len(proof.clauses):,} clauses confirmed", as_json=as_json
+        {"proved": True, "clauses": len(proof.clauses)},
+        f"proved: {counted(len(proof.clauses), 'clause')} confirmed",
+        as_json=as_json,
     )
     return YES
 
@@ -146,6 +174,7 @@ def infer(
 ) -> int:
     """Tell which relations are feasible between two entities."""
     from ninefold.reasoner.networks.conflicts import Conflict
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.explanation import explain
     from ninefold.reasoner.networks.inference import infer as inference
 
@@ -154,10 +183,14 @@ def infer(
         found = inference(network, a, b, seed=seed, budget=budget)
     names = network.calculus.names
     report: dict[str, Any] = {"a": found.a, "b": found.b, "relations": list(found.relations)}
-    lines = [f"{found.a}  {' '.join(found.relations) or 'nothing is possible: the network is inconsistent'}  {found.b}"]
-    if found.unknown:
-        report["unknown"] = list(names(found.unknown))
-        lines.append(f"not decided in {budget} s: {' '.join(report['unknown'])}")
+    feasible = " ".join(found.relations)
+    if found.consistent is False:
+        feasible = "nothing is possible: the network is inconsistent"
+    lines = [f"{found.a}  {feasible}  {found.b}"] if feasible else []
+    if found.kind is not None:
+        report["unknown"], report["kind"] = list(found.undecided), found.kind
+        report["reason"] = why_unknown(network.calculus, found.kind, budget)
+        lines.append(f"not decided between {found.a} and {found.b}: {' '.join(found.undecided)} ({report['reason']})")
     if why:
         report["excluded"] = {}
         for relation in names(network.calculus.universal & ~found.mask & ~found.unknown):
@@ -211,13 +244,19 @@ def repair(
     net: NetPath, *, calculus: CalculusName = None, budget: Budget = None, seed: Seed = 0, as_json: AsJson = False
 ) -> int:
     """Find the cheapest statements to drop so that the rest is consistent."""
+    from ninefold.errors import Undecided
+    from ninefold.reasoner.networks.deciding import why_unknown
     from ninefold.reasoner.networks.repairs import repair as cheapest
 
     network = _read(net, calculus)
-    with progress(f"repairing {net}"):
-        found = cheapest(network, seed=seed, budget=budget)
+    reason = why_unknown(network.calculus, "time", budget)
+    try:
+        with progress(f"repairing {net}"):
+            found = cheapest(network, seed=seed, budget=budget)
+    except Undecided as error:
+        found, reason = None, str(error)
     if found is None:
-        _print({"drop": None, "cost": None, "optimal": False}, f"unknown: {budget} s were not enough", as_json=as_json)
+        _print({"drop": None, "cost": None, "optimal": False, "reason": reason}, f"unknown: {reason}", as_json=as_json)
         return SPENT
     if found.conflict is not None:
         report: dict[str, Any] = {"drop": None, "cost": None, "optimal": True, "conflict": _stated(network, found.conflict)}
@@ -225,7 +264,7 @@ def repair(
         _print(report, "\n".join([*lines, *(f"  {_spoken(network, s)}" for s in found.conflict)]), as_json=as_json)
         return NO
     report = {"drop": _stated(network, found.drop), "cost": found.cost, "optimal": found.optimal}
-    lines = [f"drop {len(found.drop)} of {network.n_statements} statements, cost {found.cost:g}"]
+    lines = [f"drop {len(found.drop):,} of {counted(network.n_statements, 'statement')}, cost {found.cost:g}"]
     if not found.optimal:
         lines[0] += " (perhaps not the least: the budget is spent)"
     lines += [f"  {_spoken(network, s)}" for s in found.drop]
@@ -244,16 +283,22 @@ def scenarios(
     """List the scenarios of a network, and say how many there are."""
     from itertools import islice
 
+    from ninefold.errors import Undecided
     from ninefold.reasoner.networks.enumeration import scenarios as every
 
     network = _read(net, calculus)
-    with progress(f"listing the scenarios of {net}"):
-        found = list(islice(every(network, seed=seed), limit + 1))
+    try:
+        with progress(f"listing the scenarios of {net}"):
+            found = list(islice(every(network, seed=seed), limit + 1))
+    except Undecided as error:
+        report = {"count": 0, "exact": False, "scenarios": [], "reason": str(error)}
+        _print(report, f"unknown: {error}", as_json=as_json)
+        return SPENT
     exact, found = len(found) <= limit, found[:limit]
     if as_json:
         print_json({"count": len(found), "exact": exact, "scenarios": [_triples(s) for s in found]})
     else:
-        print(f"{'' if exact else 'more than '}{len(found)} scenario{'' if len(found) == 1 else 's'}")
+        print(f"{'' if exact else 'more than '}{counted(len(found), 'scenario')}")
         for number, scenario in enumerate(found, start=1):
             print(f"{number}: " + "; ".join(f"{a} {r} {b}" for a, b, r in scenario.triples()))
     return YES if found else NO
@@ -304,7 +349,7 @@ def _print(report: dict[str, Any], text: str, *, as_json: bool) -> None:
 
 
 def _counts(network: "Network") -> str:
-    return f"{network.n_entities:,} entities, {network.n_statements:,} statements"
+    return f"{counted(network.n_entities, 'entity', 'entities')}, {counted(network.n_statements, 'statement')}"
 
 
 def _triples(scenario: "Scenario") -> list[list[str]]:
@@ -316,10 +361,9 @@ def _stated(network: "Network", statements: "Iterable[Statement]") -> list[list[
 
 
 def _spoken(network: "Network", s: "Statement") -> str:
-    from ninefold.reasoner.networks.words import phrase
+    from ninefold.reasoner.networks.words import spoken
 
-    label = f" ({s.label})" if s.label else ""
-    return f"{phrase(network.calculus, s.a, s.mask, s.b)}{label}"
+    return spoken(network.calculus, s)
 
 
 def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tuple[str, str, str]]:
@@ -333,20 +377,56 @@ def _mentioned(scenario: "Scenario | None", atoms: "Iterable[Any]") -> list[tupl
 
 def _conflict(network: "Network", seed: int, budget: float | None) -> tuple[list[list[Any]], str]:
     """Return the statements of a conflict, and it and its derivation in words."""
+    from ninefold.encodings.theory import theory_of
     from ninefold.reasoner.networks.conflicts import conflict
     from ninefold.reasoner.networks.explanation import explain
 
     with progress("seeking a minimal conflict"):
-        found = conflict(network, seed=seed, budget=budget)
+        found = conflict(network, seed=seed, budget=budget, known=True)
         if found is None:
             return [], ""
-        kind = "minimal conflict" if found.minimal else "conflict, perhaps not minimal since the budget is spent,"
-        lines = [f"{kind} of {len(found)} statements:", *(f"  {_spoken(network, s)}" for s in found)]
+        kind = "minimal conflict"
+        if not found.minimal and theory_of(network.calculus).closure_decides:
+            kind = "conflict, perhaps not minimal since the budget is spent,"
+        elif not found.minimal:
+            kind = f"conflict, perhaps not minimal since nobody has shown that closure decides {network.calculus.name!r},"
+        lines = [f"{kind} of {counted(len(found), 'statement')}:", *(f"  {_spoken(network, s)}" for s in found)]
         return _stated(network, found), "\n".join([*lines, *explain(found, seed=seed).lines])
 
 
+def _proof_files(proof: Path | None, proof_format: str) -> list[Path]:
+    """Return the files that a proof is written to: LOG, and for other checkers the formula it refutes."""
+    from ninefold.errors import BadInput, UnknownName
+
+    if proof_format not in PROOF_FORMATS:
+        raise UnknownName("proof format", proof_format, PROOF_FORMATS)
+    if proof is None:
+        if proof_format != "native":
+            raise BadInput(f"--proof-format {proof_format} needs --proof LOG, the file to write the proof to")
+        return []
+    if proof_format == "native":
+        return [proof]
+    if proof.suffix.lower() == ".cnf":
+        raise BadInput(f"{proof}: the formula gets this name; give the proof another ending, such as .{proof_format}")
+    return [proof, proof.with_suffix(".cnf")]
+
+
+def _write_proof(network: "Network", proof: "Proof", proof_format: str, files: "Sequence[Path]", *, force: bool) -> None:
+    from ninefold._files import published
+
+    if proof_format == "native":
+        with published(files[0], force=force) as temporary:
+            temporary.write_text(proof.to_text(), encoding="ascii")
+        note(f"wrote the proof {files[0]}; `prove` confirms it")
+    else:
+        from ninefold.reasoner.networks.clausal import to_drat
+
+        to_drat(network, proof, lrat=proof_format == "lrat").write(*files, force=force)
+        note(f"wrote the proof {files[0]} and the formula {files[1]} that it refutes")
+
+
 def _draw(scenario: "Scenario", out: Path, *, title: str, force: bool) -> None:
-    from ninefold.io.files import published
+    from ninefold._files import published
     from ninefold.layout.realization import realize
     from ninefold.layout.witness import witness_svg
 

@@ -5,35 +5,43 @@ from typing import Annotated
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, Force
-from ._output import notes, print_json, progress
+from ._output import note, notes, print_json, progress
 
 __all__ = ["draw", "verify"]
 
-LayoutName = Annotated[str, typer.Option("--layout", metavar="schnyder|tutte", help="How the map is laid out.")]
+LayoutName = Annotated[str, typer.Option("--layout", metavar="auto|tutte|schnyder", help="How the map is laid out.")]
 
 
 def draw(
     atlas: AtlasPath,
     *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE.svg", help="The picture.", show_default=False)],
-    layout: LayoutName = "tutte",
+    layout: LayoutName = "auto",
     highlight: Annotated[
         list[str] | None,
-        typer.Option("--highlight", metavar="SET", help="Colour a stored name or a set as for `name`; up to 7 times."),
+        typer.Option(
+            "--highlight", metavar="SET", help="A named set, or one such as cycle:a,b,c, to colour; up to 7 times."
+        ),
     ] = None,
-    title: Annotated[str | None, typer.Option(help="A heading of its own.", show_default=False)] = None,
-    theme: Annotated[str, typer.Option(metavar="auto|light|dark", help="auto follows the reader's preference.")] = "auto",
+    title: Annotated[
+        str | None, typer.Option(help="What stands above the picture; left out, the name of the atlas.", show_default=False)
+    ] = None,
+    theme: Annotated[
+        str, typer.Option(metavar="auto|light|dark", help="Colours; auto follows the setting of whoever looks at it.")
+    ] = "auto",
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Draw the map with straight lines, its rotation and outer face as they are, and colour the sets you name."""
+    """Draw the map, with the ways around each place in their order, and colour the sets you name."""
+    from ninefold._files import refuse_existing, shown, write_text
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
-    from ninefold.io.files import published, refuse_existing
 
     if out.suffix.lower() != ".svg":
-        raise BadInput(f"{out}: pictures are SVG; name a file that ends in .svg")
+        raise BadInput(f"{shown(out)}: pictures are SVG; name a file that ends in .svg")
     refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
@@ -42,8 +50,8 @@ def draw(
         from ninefold import layout as layouts
 
         drawing = layouts.draw(plane, layout=layout)
-        with published(out, force=force) as file:
-            drawing.save(file, highlight=sets or None, title=title if title is not None else atlas.stem, theme=theme)
+        svg = drawing.to_svg(highlight=sets or None, title=title if title is not None else atlas.stem, theme=theme)
+        write_text(out, svg, force=force)
     notes(drawing.notes)
     if as_json:
         print_json({"file": str(out), "layout": drawing.layout, "notes": list(drawing.notes)})
@@ -56,32 +64,40 @@ def verify(
     atlas: AtlasPath,
     *,
     pairs: Annotated[int, typer.Option(min=1, max=1_000_000, help="How many pairs of sets to compare.")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="Of the sets and pairs drawn.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random sets and pairs.")] = 0,
     layout: LayoutName = "schnyder",
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE.svg", help="A picture of the first disagreement.", show_default=False),
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FILE.svg",
+            help="Where to draw the first pair that disagrees, if one does.",
+            show_default=False,
+        ),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Hold symbolic relations against shapely on a drawing whose planarity, rotation and outer face are checked too."""
+    """Check the map and its relations on a drawing of it: the same pairs of sets, related by shapely from coordinates."""
+    from ninefold._files import refuse_existing, write_text
     from ninefold.io import Atlas
-    from ninefold.io.files import published, refuse_existing
 
     if out is not None:
         refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
-    with progress(f"comparing {pairs:,} pairs"):
+    with progress(f"comparing {counted(pairs, 'pair')}"):
         from ninefold import layout as layouts
 
         report = layouts.verify(plane, seed=seed, n_pairs=pairs, layout=layout)
     if report.disagreements and out is not None:
         with progress("shrinking the first disagreement"):
             svg = report.disagreements[0].minimal().to_svg()
-        with published(out, force=force) as file:
-            file.write_text(svg, encoding="utf-8")
+        write_text(out, svg, force=force)
+        note(f"{out}: a picture of the first disagreement")
+    elif out is not None:
+        note(f"{out}: not written, since there is no disagreement to draw")
     if as_json:
         found_problems = [*report.problems, *map(str, report.disagreements[:10])]
         print_json({"pairs": report.pairs, "agree": report.agree, "wrong": report.wrong, "problems": found_problems})

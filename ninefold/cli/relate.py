@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ninefold._wording import counted
+
 from ._options import AsJson, AtlasPath, Force
 from ._output import print_json, progress
 
@@ -20,19 +22,28 @@ _MATRIX = "IBE"
 def relate(
     atlas: AtlasPath,
     x: Annotated[
-        str | None, typer.Argument(metavar="X", help="A stored name, or a set as for `name`.", show_default=False)
+        str | None,
+        typer.Argument(
+            metavar="X",
+            help="A name that was stored, or a set such as cycle:a,b,c; `ninefold name --help` shows the forms.",
+            show_default=False,
+        ),
     ] = None,
-    y: Annotated[str | None, typer.Argument(metavar="Y", help="The same.", show_default=False)] = None,
+    y: Annotated[
+        str | None,
+        typer.Argument(metavar="Y", help="The set that X is related to, written in the same way.", show_default=False),
+    ] = None,
     *,
-    every: Annotated[bool, typer.Option("--all", help="All pairs of the named sets, into a table.")] = False,
-    faces: Annotated[bool, typer.Option("--faces", help="All pairs of the bounded faces, into a table.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Write a table of all pairs of the named sets.")] = False,
+    faces: Annotated[bool, typer.Option("--faces", help="Write a table of all pairs of the bounded faces.")] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The table, .csv or .parquet.", show_default=False)
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="The file of the table: .csv or .parquet.", show_default=False),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Tell how X lies to Y: its name, DE-9IM and, for two regions, RCC-8; or write the table of all pairs."""
+    """Tell how X lies to Y, as a word, a DE-9IM matrix and, for two regions, in RCC-8; or write a table of all pairs."""
     from ninefold.errors import BadInput
     from ninefold.io import Atlas
 
@@ -78,15 +89,15 @@ def _faces(atlas: "Atlas") -> "dict[str, Set]":
 def _table(sets: "dict[str, Set]", out: Path, *, force: bool, as_json: bool) -> None:
     import numpy as np
 
+    from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
-    from ninefold.io.files import refuse_existing
     from ninefold.io.relations import write_relations
     from ninefold.reasoner import relate_all
 
     if len(sets) < 2:
         raise BadInput(f"there {'is only one set' if sets else 'is no set'} to relate; store sets with `ninefold name`")
     refuse_existing(out, force=force)
-    with progress(f"relating {len(sets):,} sets"):
+    with progress(f"relating {counted(len(sets), 'set')}"):
         codes = relate_all(list(sets.values()))
     with progress(f"writing {out}"):
         pairs = np.stack(np.triu_indices(len(sets), 1), axis=1)
@@ -94,4 +105,4 @@ def _table(sets: "dict[str, Set]", out: Path, *, force: bool, as_json: bool) -> 
     if as_json:
         print_json({"file": str(out), "sets": len(sets), "pairs": rows})
     else:
-        print(f"{out}: {rows:,} pairs of {len(sets):,} sets")
+        print(f"{out}: {counted(rows, 'pair')} of {counted(len(sets), 'set')}")

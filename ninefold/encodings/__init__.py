@@ -8,6 +8,8 @@ A relation is a set of base relations held as an int, one bit a base relation; n
 `model`, `rcc8`        what RCC relations say of pairs of cells, and the tables derived from that
 `composition`          composition by SAT from the same model
 `subclasses`           the maximal tractable subclasses H8, Q8, C8 (and H5 of RCC-5), and splits into them
+`horn`                 Horn theories of RCC-8 and RCC-5
+`theory`               `theory_of`: what is known of a calculus, with its sources
 `encoding`             what an encoding is: clauses, variables, decode
 `direct`, `support`    forbidden triples; what supports what
 `triangulated`         support on a chordal completion, with the orders of `orders`
@@ -52,6 +54,7 @@ if TYPE_CHECKING:
     from .splitting import encode_splitting
     from .subclasses import C8, H5, H8, NP8, Q8, Subclass
     from .support import encode_support
+    from .theory import Known, Theory, theory_of
     from .triangulated import encode_triangulated
 
 __all__ = [
@@ -71,9 +74,11 @@ __all__ = [
     "SOLVERS",
     "Calculus",
     "Encoding",
+    "Known",
     "SatComposition",
     "SatSolver",
     "Subclass",
+    "Theory",
     "Triangulation",
     "calculus_named",
     "compose_by_sat",
@@ -84,6 +89,7 @@ __all__ = [
     "encode_support",
     "encode_triangulated",
     "open_solver",
+    "theory_of",
     "triangulate",
 ]
 
@@ -103,6 +109,7 @@ __getattr__, __dir__ = attach(
         "splitting": ("encode_splitting",),
         "subclasses": ("C8", "H5", "H8", "NP8", "Q8", "Subclass"),
         "support": ("encode_support",),
+        "theory": ("Known", "Theory", "theory_of"),
         "triangulated": ("encode_triangulated",),
     },
 )

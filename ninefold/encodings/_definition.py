@@ -21,6 +21,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 
 __all__ = ["Definition", "read_definition"]
@@ -92,7 +93,7 @@ def _text_of(path: Path, where: str) -> str:
     except UnicodeDecodeError as error:
         raise BadInput(f"{told}{path} is not UTF-8 text: byte {error.start} is 0x{error.object[error.start]:02x}") from None
     except ValueError as error:  # a null character in the path
-        raise BadInput(f"{told}cannot read {str(path)!r}: {error}") from None
+        raise BadInput(f"{told}cannot read {quoted(str(path))}: {error}") from None
 
 
 def _read(said: _Lines, text: str, file: str) -> None:
@@ -114,13 +115,15 @@ def _setting(said: _Lines, line: str, where: str) -> None:
     key, _, value = line.partition(" ")
     value = value.strip()
     if key not in _KEYS:
-        raise BadInput(f"{where}: {line!r} is neither a setting ({', '.join(_KEYS)}) nor 'a :: b' nor 'a : b :: ( c d )'")
+        raise BadInput(
+            f"{where}: {quoted(line)} is neither a setting ({', '.join(_KEYS)}) nor 'a :: b' nor 'a : b :: ( c d )'"
+        )
     if not value:
         raise BadInput(f"{where}: {key} has no value")
     if key == "alias":
         words = value.split()
         if len(words) != 2:
-            raise BadInput(f"{where}: alias takes a word and a base relation, not {value!r}")
+            raise BadInput(f"{where}: alias takes a word and a base relation, not {quoted(value)}")
         said.aliases.append((words[0], words[1]))
         return
     if key in said.settings:
@@ -158,7 +161,7 @@ def _assemble(said: _Lines, name: str, file: str) -> Definition:
     index = {base: k for k, base in enumerate(bases)}
     if len(index) < len(bases):
         twice = next(base for k, base in enumerate(bases) if base in bases[:k])
-        raise BadInput(f"{said.settings['base_relations'][1]}: base relation {twice!r} is named twice")
+        raise BadInput(f"{said.settings['base_relations'][1]}: base relation {quoted(twice)} is named twice")
 
     def look_up(base: str, where: str) -> int:
         if base not in index:

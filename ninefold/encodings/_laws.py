@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -22,13 +23,13 @@ __all__ = ["check", "check_names"]
 def check_names(calculus: str, bases: tuple[str, ...]) -> None:
     """Refuse a calculus without base relations, or with two of one name."""
     if not bases:
-        raise BadInput(f"calculus {calculus!r} has no base relation")
+        raise BadInput(f"calculus {quoted(calculus)} has no base relation")
     twice = sorted({base for base in bases if bases.count(base) > 1})
     if twice:
-        raise BadInput(f"calculus {calculus!r}: base relation {twice[0]!r} is named twice")
+        raise BadInput(f"calculus {quoted(calculus)}: base relation {quoted(twice[0])} is named twice")
     for base in bases:
         if not base or any(c.isspace() or c in ",()" for c in base):
-            raise BadInput(f"calculus {calculus!r}: {base!r} cannot be a name: no spaces, commas or parentheses")
+            raise BadInput(f"calculus {quoted(calculus)}: {quoted(base)} cannot be a name: no spaces, commas or parentheses")
 
 
 def check(
@@ -51,14 +52,14 @@ def check(
     b = len(bases)
     if converse.shape != (b,) or table.shape != (b, b):
         raise BadInput(
-            f"calculus {calculus!r} has {b} base relations, so its converse table is ({b},) and its composition table "
+            f"calculus {quoted(calculus)} has {b} base relations, so its converse table is ({b},) and its composition table "
             f"({b}, {b}), not {converse.shape} and {table.shape}"
         )
     if not 0 < identity < 1 << b:
-        raise BadInput(f"calculus {calculus!r}: identity {identity} is no non-empty set of its {b} base relations")
+        raise BadInput(f"calculus {quoted(calculus)}: identity {identity} is no non-empty set of its {b} base relations")
 
     def fail(law: str) -> BadInput:
-        return BadInput(f"calculus {calculus!r}: {law}")
+        return BadInput(f"calculus {quoted(calculus)}: {law}")
 
     outside = np.flatnonzero((converse < 0) | (converse >= b))
     if outside.size:

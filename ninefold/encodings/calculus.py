@@ -27,10 +27,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, TooLarge, UnknownName
 
 from . import _laws
 from ._definition import Definition, read_definition
+from .gis_words import meant_by
 
 if TYPE_CHECKING:
     import os
@@ -196,7 +198,7 @@ class Calculus:
         Raises
         ------
         UnknownName
-            A name that is no relation of this calculus, with near ones.
+            A name that is no relation of this calculus, with near ones, or with what the word means elsewhere.
         BadInput
             No name at all, or a mask with bits outside the calculus.
 
@@ -212,24 +214,24 @@ class Calculus:
             return int(relations)
         words = [relations] if isinstance(relations, str) else relations
         if isinstance(words, bool) or not isinstance(words, Iterable):
-            raise BadInput(f"relations of {self.name} are names or a mask, not {relations!r}")
+            raise BadInput(f"relations of {self.name} are names or a mask, not {quoted(relations)}")
         mask = 0
         for word in words:
             if not isinstance(word, str):
-                raise BadInput(f"a relation of {self.name} is named by a string, not {word!r}")
+                raise BadInput(f"a relation of {self.name} is named by a string, not {quoted(word)}")
             for part in filter(None, _SEPARATORS.split(word)):
                 # "|" separates too, unless it is (in) the name of a relation
                 names = [part] if part in self._masks else filter(None, part.split("|"))
                 for name in names:
                     mask |= self._base_mask(name)
         if not mask:
-            raise BadInput(f"the relation set {relations!r} is empty: name at least one of {' '.join(self.bases)}")
+            raise BadInput(f"the relation set {quoted(relations)} is empty: name at least one of {' '.join(self.bases)}")
         return mask
 
     def _base_mask(self, name: str) -> int:
         mask = self._masks.get(name) or self._folded.get(name.casefold())
         if mask is None:
-            raise UnknownName("relation", name, self._masks)
+            raise UnknownName("relation", name, self._masks, meant=meant_by(name, self))
         return mask
 
     def names(self, mask: int) -> tuple[str, ...]:
@@ -298,7 +300,7 @@ class Calculus:
 
 def _check_size(name: str, b: int) -> None:
     if b > MAX_BASES:
-        raise TooLarge(f"calculus {name!r} has {b} base relations; a relation is one word, so at most {MAX_BASES}")
+        raise TooLarge(f"calculus {quoted(name)} has {b} base relations; a relation is one word, so at most {MAX_BASES}")
 
 
 def _mask_dtype(b: int) -> Any:

@@ -33,8 +33,8 @@ import numpy as np
 from ninefold.errors import BadInput
 
 from .encoding import Clause, Constraint, Encoding, Labels, label_matrix
-from .model import RCC5_MODEL, RCC8_MODEL, relation_between
-from .rcc8 import RCC5, RCC8
+from .model import relation_between
+from .theory import theory_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -50,7 +50,7 @@ def encode_cells(calculus: Calculus, n: int, constraints: Iterable[Constraint]) 
     Parameters
     ----------
     calculus
-        RCC-8 or RCC-5.
+        One with a model (see `ninefold.encodings.theory`): RCC-8 or RCC-5.
 
     Notes
     -----
@@ -65,12 +65,10 @@ def encode_cells(calculus: Calculus, n: int, constraints: Iterable[Constraint]) 
     ----------
     O(m (m + n)) clauses for m constrained pairs, at most 12 a pair and island.
     """
-    if calculus == RCC8:
-        model = RCC8_MODEL
-    elif calculus == RCC5:
-        model = RCC5_MODEL
-    else:
+    known = theory_of(calculus).model
+    if known is None:
         raise BadInput(f"cells are a model of rcc8 and rcc5, not of {calculus.name!r}: use another encoding")
+    model = known.value
     labels = Labels(calculus, label_matrix(calculus, n, constraints))
     clauses: list[Clause] = labels.exactly_one()
     n_vars = len(labels.variables)

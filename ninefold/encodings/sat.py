@@ -23,6 +23,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 
 if TYPE_CHECKING:
@@ -118,7 +119,7 @@ class _PySat:
             if not len(clause):
                 self._false = True
             elif 0 in clause:
-                raise BadInput(f"clause {list(clause)!r} holds 0, which is no literal: variables are numbered from 1")
+                raise BadInput(f"clause {quoted(list(clause))} holds 0, which is no literal: variables are numbered from 1")
             else:
                 solver.add_clause(clause)
 
@@ -127,7 +128,7 @@ class _PySat:
         if 0 in assumptions:
             raise BadInput("0 is no literal and cannot be assumed: variables are numbered from 1")
         if budget is not None and not budget > 0:
-            raise BadInput(f"a budget is a positive number of seconds, not {budget!r}")
+            raise BadInput(f"a budget is a positive number of seconds, not {quoted(budget)}")
         assumed = list(assumptions)
         self._answer = None
         self._by_clause = self._false

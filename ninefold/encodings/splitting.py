@@ -1,17 +1,9 @@
 """Splitting into a tractable subclass: Horn clauses for everything but the choice between parts of a label.
 
-Six atoms describe a pair of regions (x, y): contact C, overlap O, part P(x, y) and P(y, x), inner part N(x, y) and
-N(y, x). The base relations are the truth assignments
-
-====  ====  ====  ===============  ========================  ======================
-DC    EC    PO    TPP              NTPP                      EQ
-none  C     C, O  C, O, P(x, y)    C, O, P(x, y), N(x, y)    C, O, P(x, y), P(y, x)
-====  ====  ====  ===============  ========================  ======================
-
-and the converses. What composition says of three regions is a handful of Horn clauses over these atoms ("a part of a
-part is a part", ...), and the labels that Horn clauses can express, those closed under taking the atoms two members
-have in common, are exactly H8. Every other label is split into its parts in H8, with one selector a part: once the
-selectors are chosen, unit propagation alone decides. RCC-5 is the same without boundaries (O and P only).
+What composition says of three regions is a handful of Horn clauses over atoms of pairs (`ninefold.encodings.horn`), and a
+label that belongs to the subclass of that theory (H8 of RCC-8, H5 of RCC-5) is Horn clauses too. Every other label is
+split into its parts in the subclass, with one selector a part: once the selectors are chosen, unit propagation alone
+decides.
 
 Examples
 --------
@@ -29,92 +21,24 @@ connection calculus", Artificial Intelligence 108, 1999, for H8.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .encoding import Clause, Constraint, Encoding, label_matrix
 from .orders import triangulate
-from .rcc8 import RCC5, RCC8
-from .subclasses import H5, H8, Subclass
+from .theory import theory_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from .calculus import Calculus
+    from .horn import HornTheory
 
-__all__ = ["HORN_THEORIES", "HornTheory", "encode_splitting"]
-
-
-@dataclass(frozen=True, slots=True)
-class HornTheory:
-    """Atoms over pairs of entities in which composition and a subclass of labels are Horn.
-
-    Parameters
-    ----------
-    calculus, subclass
-        What it is a theory of, and the labels that it expresses.
-    atoms
-        For every atom the one that says the same of (y, x): itself if it is symmetric.
-    meaning
-        For every base relation, in the order of the bits, the atoms that hold.
-    pair_rules
-        Horn clauses over one pair: atoms that cannot hold without the last, or (last None) together.
-    triangle_rules
-        ``(p, q, r)``: p of (x, y) and q of (y, z) give r of (x, z).
-    """
-
-    calculus: Calculus
-    subclass: Subclass
-    atoms: dict[str, str]
-    meaning: tuple[frozenset[str], ...]
-    pair_rules: tuple[tuple[tuple[str, ...], str | None], ...]
-    triangle_rules: tuple[tuple[str, str, str], ...]
-
-
-_ATOMS8 = {"C": "C", "O": "O", "P": "Pi", "Pi": "P", "N": "Ni", "Ni": "N"}
-_ATOMS5 = {"O": "O", "P": "Pi", "Pi": "P"}
-
-_RCC8_THEORY = HornTheory(
-    calculus=RCC8,
-    subclass=H8,
-    atoms=_ATOMS8,
-    meaning=tuple(
-        map(frozenset, ([], ["C"], "CO", "COP", "COPN", ["C", "O", "Pi"], ["C", "O", "Pi", "Ni"], ["C", "O", "P", "Pi"]))
-    ),
-    pair_rules=(
-        (("N",), "P"),
-        (("Ni",), "Pi"),
-        (("P",), "O"),
-        (("Pi",), "O"),
-        (("O",), "C"),
-        (("N", "Pi"), None),
-        (("P", "Ni"), None),
-    ),
-    triangle_rules=(
-        ("C", "P", "C"),
-        ("O", "P", "O"),
-        ("P", "P", "P"),
-        ("N", "P", "N"),
-        ("P", "N", "N"),
-        ("C", "N", "O"),
-    ),
-)
-
-_RCC5_THEORY = HornTheory(
-    calculus=RCC5,
-    subclass=H5,
-    atoms=_ATOMS5,
-    meaning=tuple(map(frozenset, ([], ["O"], ["O", "P"], ["O", "Pi"], ["O", "P", "Pi"]))),
-    pair_rules=((("P",), "O"), (("Pi",), "O")),
-    triangle_rules=(("O", "P", "O"), ("P", "P", "P")),
-)
-
-HORN_THEORIES = {"rcc8": _RCC8_THEORY, "rcc5": _RCC5_THEORY}
-"""The calculi that can be split, by name."""
+__all__ = ["encode_splitting"]
 
 
 def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constraint], *, order: str | None = None) -> Encoding:
@@ -123,7 +47,7 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
     Parameters
     ----------
     calculus
-        RCC-8 or RCC-5.
+        One with a Horn theory (see `ninefold.encodings.theory`): RCC-8 or RCC-5.
     order
         Elimination order for a chordal completion (see `ninefold.encodings.orders`); None encodes the complete graph.
 
@@ -136,10 +60,11 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
     ----------
     36 clauses of three literals a triangle for RCC-8, 12 for RCC-5.
     """
-    theory = HORN_THEORIES.get(calculus.name)
-    if theory is None or theory.calculus != calculus:
-        known = " and ".join(HORN_THEORIES)
-        raise BadInput(f"no Horn theory of {calculus.name!r} is known, only of {known}: use another encoding")
+    known = theory_of(calculus).horn
+    if known is None:
+        name = quoted(calculus.name)
+        raise BadInput(f"no Horn theory of {name} is known, only of rcc8 and rcc5: use another encoding")
+    theory = known.value
     given = label_matrix(calculus, n, constraints)
     triangles: Iterable[tuple[int, int, int]]
     if order is None:
@@ -171,7 +96,7 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
             if mask >> k & 1:
                 n_vars += 1
                 variables[i, j, k] = n_vars
-                signed = _definition(theory.calculus.name, k)
+                signed = _definition(theory, k)
                 literals = [atom[name, i, j] if sign else -atom[name, i, j] for name, sign in signed]
                 clauses.extend((-n_vars, literal) for literal in literals)
                 clauses.append((n_vars, *(-literal for literal in literals)))
@@ -186,7 +111,7 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
                 n_vars += 1
                 selectors.append(n_vars)
                 guard = (-n_vars,)
-            for body, head in _horn_label(theory.calculus.name, part):
+            for body, head in _horn_label(theory, part):
                 clauses.append(
                     (*guard, *(-atom[name, i, j] for name in body), *(() if head is None else (atom[head, i, j],)))
                 )
@@ -202,14 +127,13 @@ def encode_splitting(calculus: Calculus, n: int, constraints: Iterable[Constrain
 
 
 @cache
-def _horn_label(calculus: str, mask: int) -> tuple[tuple[tuple[str, ...], str | None], ...]:
+def _horn_label(theory: HornTheory, mask: int) -> tuple[tuple[tuple[str, ...], str | None], ...]:
     """Return Horn clauses (body, head) that hold for the base relations in a mask of the subclass, and for no other.
 
     For a base relation outside, the atoms that it shows are the body. The members that show all of these have
     a meet in the mask, which is not that base relation, so it shows a further atom: the head; without such members
     there is none.
     """
-    theory = HORN_THEORIES[calculus]
     members = [held for k, held in enumerate(theory.meaning) if mask >> k & 1]
     rules: list[tuple[tuple[str, ...], str | None]] = []
     for k, outside in enumerate(theory.meaning):
@@ -229,9 +153,8 @@ def _horn_label(calculus: str, mask: int) -> tuple[tuple[tuple[str, ...], str | 
 
 
 @cache
-def _definition(calculus: str, base: int) -> tuple[tuple[str, bool], ...]:
+def _definition(theory: HornTheory, base: int) -> tuple[tuple[str, bool], ...]:
     """Return signed atoms that tell a base relation from all others, as few as leaving them out one by one gives."""
-    theory = HORN_THEORIES[calculus]
     signed = [(name, name in theory.meaning[base]) for name in theory.atoms]
     for literal in list(signed):
         rest = [other for other in signed if other != literal]

@@ -3,7 +3,7 @@
 **In.** `read_source` gives a `Source`: vertices, polylines and notes, with shapely geometry at hand; GeoJSON lines in the
 base install, and the bundled `samples` (`ninefold.io.sources`). `read_walk` reads what a robot sensed (`ninefold.io.walks`),
 `read_network` a set of declared relations (`ninefold.io.networks`). `read_map` takes any source, walk or atlas and gives the
-plane map (`ninefold.io.formats`).
+plane map (`ninefold.io.maps`); what a file is, one table tells (`ninefold.io.formats`).
 
 **Kept.** `Atlas` is one SQLite file with a walk, its map, named sets, declared relations and where all that came from
 (`ninefold.io.atlas`). An event that was appended is there after a crash.
@@ -23,7 +23,7 @@ from ninefold._lazy import attach
 if TYPE_CHECKING:
     from .atlas.atlas import Atlas
     from .atlas.records import Provenance, Statement
-    from .formats import read_map
+    from .maps import read_map
     from .networks.network_file import read_network, write_network
     from .sources import samples
     from .sources.reading import read_source
@@ -50,7 +50,7 @@ __getattr__, __dir__ = attach(
     {
         "atlas.atlas": ("Atlas",),
         "atlas.records": ("Provenance", "Statement"),
-        "formats": ("read_map",),
+        "maps": ("read_map",),
         "networks.network_file": ("read_network", "write_network"),
         "sources.reading": ("read_source",),
         "sources.source": ("Source",),

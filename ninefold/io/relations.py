@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._files import published
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, MissingExtra
 from ninefold.reasoner import Relation
-
-from .files import published
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +81,7 @@ def write_relations(
                 _write_parquet(temporary, names, index, code)
         case other:
             raise BadInput(
-                f"{target}: a table of relations is a .csv or .parquet file, not {other or 'one without suffix'!r}"
+                f"{target}: a table of relations is a .csv or .parquet file, not {quoted(other or 'one without suffix')}"
             )
     return len(index)
 

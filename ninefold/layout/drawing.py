@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._files import write_text
+from ninefold._wording import counted
 from ninefold.errors import BadInput, DifferentMaps
+from ninefold.immutable import Immutable, freeze, frozen_copy
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -22,7 +25,7 @@ __all__ = ["Drawing"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Drawing:
+class Drawing(Immutable):
     """A straight-line drawing of a plane map; edges have bends only where they must (loops, parallel edges).
 
     Attributes
@@ -38,6 +41,8 @@ class Drawing:
         The name of the layout that made it.
     notes
         What the reader of the drawing should know, such as a fall-back to another layout.
+    highlight
+        Sets that every picture of this drawing colours, each with its name in the legend; see `highlighting`.
     """
 
     plane: PlaneMap = field(repr=False)
@@ -46,6 +51,11 @@ class Drawing:
     bend_start: NDArray[np.int64]
     layout: str = "given"
     notes: tuple[str, ...] = ()
+    highlight: tuple[tuple[str, Set], ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("points", "bends", "bend_start"):
+            object.__setattr__(self, name, frozen_copy(getattr(self, name)))
 
     @classmethod
     def from_points(
@@ -67,15 +77,17 @@ class Drawing:
         """
         xy = _coordinates("points", points)
         if len(xy) != plane.n_vertices:
-            raise BadInput(f"{len(xy)} points for {plane.n_vertices} vertices; give one each")
+            raise BadInput(
+                f"{counted(len(xy), 'point')} for {counted(plane.n_vertices, 'vertex', 'vertices')}; give one each"
+            )
         inner = np.zeros((0, 2), xy.dtype) if bends is None else _coordinates("bends", bends)
         start = np.zeros(plane.tether.size + 1, np.int64) if bend_start is None else np.array(bend_start, np.int64)
         if start.shape != (plane.tether.size + 1,) or start[0] != 0 or start[-1] != len(inner) or (np.diff(start) < 0).any():
             raise BadInput(
-                f"bend_start must rise from 0 to {len(inner)} in {plane.tether.size + 1} steps, one more than edges"
+                f"bend_start must hold {counted(plane.tether.size + 1, 'number')}, one more than edges, "
+                f"that rise from 0 to {len(inner)}"
             )
-        for array in (xy, inner, start):
-            array.setflags(write=False)
+        freeze(xy, inner, start)
         return cls(plane, xy, inner, start, layout, tuple(notes))
 
     # -- coordinates ---------------------------------------------------------------------------------------------------
@@ -96,6 +108,7 @@ class Drawing:
         line[start[1:] - 1] = self.points[self.plane.tail[1::2]]
         bend_edge = np.repeat(np.arange(count.size), count)
         line[np.arange(len(self.bends)) + 2 * bend_edge + 1] = self.bends
+        freeze(line, start)
         return line, start
 
     @cached_property
@@ -104,7 +117,9 @@ class Drawing:
         line, start = self._lines
         edge = np.repeat(np.arange(start.size - 1), np.diff(start))
         keep = (edge[:-1] == edge[1:]) & ~self.plane.tether[edge[:-1]] if len(edge) else np.zeros(0, np.bool_)
-        return np.concatenate([line[:-1], line[1:]], axis=1)[keep], edge[:-1][keep]
+        pieces, owner = np.concatenate([line[:-1], line[1:]], axis=1)[keep], edge[:-1][keep]
+        freeze(pieces, owner)
+        return pieces, owner
 
     # -- geometry ------------------------------------------------------------------------------------------------------
 
@@ -157,6 +172,31 @@ class Drawing:
 
     # -- pictures ------------------------------------------------------------------------------------------------------
 
+    def highlighting(self, highlight: Mapping[str, Set] | Iterable[Set] | Set) -> Drawing:
+        """Return this drawing with sets that each of its pictures colours, the one in a notebook too.
+
+        Parameters
+        ----------
+        highlight
+            A mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ...
+
+        Raises
+        ------
+        BadInput, DifferentMaps
+            For more sets than colours, things that are no sets, a set of another map.
+
+        Examples
+        --------
+        >>> from ninefold.layout import draw
+        >>> from ninefold.mapping import PlaneMap
+        >>> edge = PlaneMap.from_rotation({"a": ["b"], "b": ["a"]})
+        >>> draw(edge).highlighting({"way in": edge.edge("a", "b")}).highlight
+        (('way in', Line(@0)),)
+        """
+        from .svg import named_sets
+
+        return replace(self, highlight=tuple(named_sets(self, highlight)))
+
     def to_svg(
         self,
         *,
@@ -171,7 +211,8 @@ class Drawing:
         Parameters
         ----------
         highlight
-            Sets to colour: a mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ...
+            Sets to colour: a mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ... Left out,
+            those of `highlighting`; an empty list colours none.
         title
             Heading of the picture, also its accessible name.
         labels
@@ -191,20 +232,14 @@ class Drawing:
         return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width)
 
     def save(self, path: str | Path, **options: Any) -> None:
-        """Write the drawing as an SVG file; options as for `to_svg`.
+        """Write the drawing as an SVG file, whole or not at all; a file that is there is replaced. Options as for `to_svg`.
 
         Raises
         ------
         BadInput
-            If the file cannot be written.
+            If the file cannot be written; what was there before stays.
         """
-        from pathlib import Path
-
-        text = self.to_svg(**options)
-        try:
-            Path(path).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise BadInput(f"cannot write the drawing to {str(path)!r}: {error.strerror or error}") from None
+        write_text(path, self.to_svg(**options), force=True)
 
     def plot(self, *, highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None, axes: Any = None) -> Any:
         """Draw on matplotlib axes and return them; see `ninefold.layout.plot`.
@@ -224,7 +259,9 @@ class Drawing:
     def __repr__(self) -> str:
         parts = [self.layout, repr(self.plane)]
         if len(self.bends):
-            parts.append(f"{len(self.bends)} bend{'' if len(self.bends) == 1 else 's'}")
+            parts.append(counted(len(self.bends), "bend"))
+        if self.highlight:
+            parts.append(f"highlight {', '.join(name for name, _ in self.highlight)}")
         return f"Drawing({', '.join([*parts, *self.notes])})"
 
 

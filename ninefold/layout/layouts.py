@@ -5,47 +5,78 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
+from ninefold.mapping import Line, PlaneMap, Point, Region
 
 from .methods.schnyder import schnyder
 from .methods.tutte import tutte
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Mapping
 
-    from ninefold.mapping import PlaneMap
+    from ninefold.mapping import Set
 
     from .drawing import Drawing
 
-__all__ = ["LAYOUTS", "draw"]
+__all__ = ["DEFAULT_LAYOUT", "LAYOUTS", "draw"]
 
-LAYOUTS: dict[str, Callable[[PlaneMap], Drawing]] = {"schnyder": schnyder, "tutte": tutte}
-"""Layouts by name."""
+DEFAULT_LAYOUT = "auto"
+"""The layout of pictures, from Python and from the command line, unless another is asked for."""
+
+LAYOUTS: dict[str, Callable[[PlaneMap], Drawing]] = {"auto": tutte, "tutte": tutte, "schnyder": schnyder}
+"""Layouts by name. "auto" is the best for people that the map allows: today "tutte", which falls back to "schnyder"."""
 
 
-def draw(plane: PlaneMap, *, layout: str = "schnyder") -> Drawing:
-    """Draw a map; in a notebook the result shows itself.
+def draw(
+    plane: PlaneMap,
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
+) -> Drawing:
+    """Draw a map; in a notebook the result shows itself, and `Drawing.save` writes it to a file.
 
     Parameters
     ----------
+    plane
+        The map.
     layout
-        "schnyder" (integer grid, any size) or "tutte" (rounder, for people).
+        "auto" (the best there is for people), "tutte" (every vertex amid its neighbours; where that is too fine for
+        floating point the Schnyder drawing is given, and the notes say so) or "schnyder" (integer grid, any size).
+    highlight
+        Sets to colour: a mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ...
 
     Raises
     ------
-    BadInput
-        For an unknown layout; the message lists the known ones.
+    BadInput, DifferentMaps
+        For an unknown layout (the message lists the known ones), something that is no map, sets that cannot be highlighted.
 
     Examples
     --------
     >>> from ninefold.layout import draw
     >>> from ninefold.mapping import PlaneMap
-    >>> draw(PlaneMap.from_rotation({"a": ["b"], "b": ["a"]}))
-    Drawing(schnyder, PlaneMap(2 vertices, 1 edge, 1 face))
+    >>> edge = PlaneMap.from_rotation({"a": ["b"], "b": ["a"]})
+    >>> draw(edge)
+    Drawing(tutte, PlaneMap(2 vertices, 1 edge, 1 face))
+    >>> draw(edge, layout="schnyder", highlight=[edge.vertex("a")])
+    Drawing(schnyder, PlaneMap(2 vertices, 1 edge, 1 face), highlight X)
     """
-    make = LAYOUTS.get(layout)
+    if not isinstance(plane, PlaneMap):
+        raise BadInput(_no_map(plane))
+    make = LAYOUTS.get(layout) if isinstance(layout, str) else None
     if make is None:
         near = get_close_matches(str(layout), LAYOUTS, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}? " if near else ""
-        raise BadInput(f"there is no layout named {layout!r}; {hint}the layouts are {', '.join(sorted(LAYOUTS))}")
-    return make(plane)
+        raise BadInput(f"there is no layout named {quoted(layout)}; {hint}the layouts are {', '.join(sorted(LAYOUTS))}")
+    drawing = make(plane)
+    return drawing if highlight is None else drawing.highlighting(highlight)
+
+
+def _no_map(given: object) -> str:
+    if isinstance(given, Point | Line | Region):
+        return f"draw takes a map, and {quoted(given)} is a set of one: draw(X.plane, highlight=[X]) shows X on its map"
+    if isinstance(getattr(type(given), "plane", None), property):  # a mapper, an atlas
+        return f"draw takes a map, not the {type(given).__name__} that holds one: draw(X.plane)"
+    if hasattr(type(given), "to_map"):
+        return f"draw takes a map, and a {type(given).__name__} makes one: draw(X.to_map())"
+    return f"draw takes a PlaneMap, not {quoted(given)}; nf.read_map reads one from a file"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from ninefold.errors import BadInput
-from ninefold.mapping import Line, Point, Region
+from ninefold.mapping import Line, Point, Region, Vertex
 from ninefold.mapping.sets import same_map
 from ninefold.reasoner import relate
 
@@ -151,7 +151,7 @@ def verify(
         Sets, of which all ordered pairs are compared; or pairs of sets. Left out, `n_pairs` pairs of points, lines and
         regions are sampled with `seed`.
     layout
-        "schnyder" or "tutte".
+        A layout by name, as for `draw`. The Schnyder drawing is exact at any size, so it is the one checked by default.
     drawing
         A drawing to check instead of a fresh one.
 
@@ -227,7 +227,7 @@ def _chosen(
     for x in sets:
         if not isinstance(x, Point | Line | Region):
             raise BadInput(f"verify takes sets of the map, or pairs of them, not {x!r}")
-        same_map(Point(plane, 0), x)
+        same_map(Point(plane, Vertex(0)), x)
     return sets, pairs
 
 

@@ -1,12 +1,14 @@
 """Whether coordinates draw a map: no crossing, and the rotation, the faces and the outer face that the map has.
 
-Nothing here trusts a layout. Crossings are searched with shapely's STRtree over the straight pieces; the rotation is
-checked with exact signs; and `PlaneMap.from_geometry` builds the map again from the coordinates alone.
+Nothing here trusts a layout. Crossings of the straight pieces are searched with shapely's STRtree in small drawings, and by
+a sweep with exact signs in large ones, where boxes of thin pieces and pieces around one vertex meet by the million; the
+rotation is checked with exact signs; and `PlaneMap.from_geometry` builds the map again from the coordinates alone.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cmp_to_key
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,14 +17,19 @@ from ninefold.errors import BadInput
 from ninefold.mapping import PlaneMap
 from ninefold.mapping.checks import strip_tethers
 
+from ._sweep import NOTHING, PIECES, sweep
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .drawing import Drawing
 
-__all__ = ["crossing_pieces", "drawing_problems", "orientation"]
+__all__ = ["crossing_pieces", "drawing_problems", "first_meeting", "orientation"]
 
 _SHOWN = 3
+
+MOST_PIECES, MOST_PAIRS = 5_000, 1_000_000
+"""Straight pieces, and pairs of them around common vertices, up to which every crossing is searched for with shapely."""
 
 
 def drawing_problems(drawing: Drawing) -> tuple[str, ...]:
@@ -30,7 +37,8 @@ def drawing_problems(drawing: Drawing) -> tuple[str, ...]:
 
     Notes
     -----
-    Complexity O(S log S + pairs of pieces with overlapping boxes) for S straight pieces.
+    Complexity O(S log S) for S straight pieces, whatever the degrees. Up to three crossings are named in a small drawing,
+    one in a large one.
 
     Examples
     --------
@@ -48,8 +56,11 @@ def drawing_problems(drawing: Drawing) -> tuple[str, ...]:
 
 def _crossings(drawing: Drawing) -> list[str]:
     plane = drawing.plane
-    pairs, points = crossing_pieces(drawing)
     _, edge = drawing.pieces
+    if edge.size > MOST_PIECES or int((plane.degree.astype(np.int64) ** 2).sum()) > 2 * MOST_PAIRS:
+        pairs, points = first_meeting(drawing)
+    else:
+        pairs, points = crossing_pieces(drawing)
     names = plane.edge_names
     words = [f"edges {names[int(edge[i])]!r} and {names[int(edge[j])]!r} meet off their ends" for i, j in pairs[:_SHOWN]]
     words += [f"vertex {plane.vertex_names[v]!r} lies on edge {names[int(edge[i])]!r}" for v, i in points[:_SHOWN]]
@@ -98,6 +109,81 @@ def crossing_pieces(drawing: Drawing) -> tuple[list[tuple[int, int]], list[tuple
     lone = np.flatnonzero(drawing.plane.degree == 0)
     v, s = tree.query(shapely.points(drawing.points[lone].astype(np.float64)), predicate="intersects")
     return pairs, list(zip(lone[v].tolist(), s.tolist(), strict=True))
+
+
+def first_meeting(drawing: Drawing) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    """Find the westernmost place where straight pieces, or nodes, meet as they must not; like `crossing_pieces`, but one.
+
+    Returns
+    -------
+    pairs
+        The two pieces, the lower number first; or nothing.
+    points
+        A vertex and the piece it lies on; or nothing.
+
+    Notes
+    -----
+    Complexity O(S log S) for S pieces. Two vertices at one place are a meeting of two of their pieces; two isolated ones are
+    not looked at.
+    """
+    ends = _piece_ends(drawing)
+    piece, _ = drawing.pieces
+    flat = np.flatnonzero((piece[:, :2] == piece[:, 2:]).all(axis=1))
+    if not len(ends) or flat.size:
+        return [(int(k), int(k)) for k in flat[:1]], []
+    nodes = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
+    used = np.zeros(len(nodes), np.bool_)
+    used[ends] = True
+    lone = np.flatnonzero(~used[: drawing.plane.n_vertices])
+    there = np.concatenate([np.flatnonzero(used), lone])
+    order = there[np.lexsort((nodes[there, 1], nodes[there, 0]))]
+    xy = nodes[order]
+    place = np.full(len(nodes), -1, np.int64)
+    place[order] = np.arange(order.size)
+    low, high = np.sort(place[ends], axis=1).T
+    same = np.flatnonzero((xy[1:] == xy[:-1]).all(axis=1))
+    for u, v in order[same[:, None] + [0, 1]].tolist():
+        at = [int(np.flatnonzero((ends == node).any(axis=1))[0]) if used[node] else -1 for node in (u, v)]
+        if min(at) >= 0:
+            return [(min(at), max(at))], []
+        if max(at) >= 0:
+            return [], [(v if at[1] < 0 else u, max(at))]
+    if same.size:  # isolated vertices on each other: the sweep needs each place once
+        keep = np.concatenate([[True], (xy[1:] != xy[:-1]).any(axis=1)])
+        number = np.cumsum(keep) - 1
+        xy, order, low, high = xy[keep], order[keep], number[low], number[high]
+    row = _counter_clockwise(xy, low, high)
+    low, high = low[row], high[row]
+    arriving = np.argsort(high, kind="stable")
+    leave, arrive = (np.searchsorted(sorted_ends, np.arange(len(xy) + 1)) for sorted_ends in (low, high[arriving]))
+    kind, i, j = sweep.for_work(64 * len(row))(xy, low, high, leave, arriving, arrive)
+    if kind == NOTHING:
+        return [], []
+    if kind == PIECES:
+        a, b = sorted((int(row[i]), int(row[j])))
+        return [(a, b)], []
+    node, on = int(order[i]), int(row[j])
+    if not used[node]:
+        return [], [(node, on)]
+    a, b = sorted((int(np.flatnonzero((ends == node).any(axis=1))[0]), on))
+    return [(a, b)], []
+
+
+def _counter_clockwise(xy: NDArray[np.float64], low: NDArray[np.int64], high: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Sort pieces by their western node and around it from south by the exact sign of the turn."""
+    step = xy[high] - xy[low]
+    piece = np.lexsort((np.arctan2(step[:, 1], step[:, 0]), low))
+    a, b = piece[:-1], piece[1:]
+    rows = np.flatnonzero(low[a] == low[b])
+    wrong = rows[orientation(xy[low[a[rows]]], xy[high[a[rows]]], xy[high[b[rows]]]) < 0]
+    for v in np.unique(low[piece[wrong]]).tolist():  # directions that rounding to an angle has put in the wrong order
+
+        def before(e: int, f: int, v: int = v) -> int:
+            return -int(orientation(xy[[v]], xy[high[[e]]], xy[high[[f]]])[0])
+
+        here = np.flatnonzero(low[piece] == v)
+        piece[here] = sorted(piece[here].tolist(), key=cmp_to_key(before))
+    return piece
 
 
 def _piece_ends(drawing: Drawing) -> NDArray[np.int64]:
@@ -174,7 +260,8 @@ def orientation(a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) -> NDArray[np
     det = one - two
     sign = np.sign(det).astype(np.int64)
     if det.dtype.kind == "f":
-        for k in np.flatnonzero(np.abs(det) <= 4e-16 * (np.abs(one) + np.abs(two))).tolist():
+        unsure = (np.abs(det) <= 4e-16 * (np.abs(one) + np.abs(two))) & (b != c).any(axis=1)
+        for k in np.flatnonzero(unsure).tolist():
             ax, ay, bx, by, cx, cy = (Fraction(float(t)) for point in (a[k], b[k], c[k]) for t in point)
             exact = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
             sign[k] = (exact > 0) - (exact < 0)

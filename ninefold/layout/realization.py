@@ -35,16 +35,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ninefold.encodings.model import RCC5_MODEL, RCC8_MODEL, matches
-from ninefold.encodings.rcc8 import RCC5, RCC8
+from ninefold._wording import quoted
+from ninefold.encodings.model import matches
+from ninefold.encodings.rcc8 import RCC8
+from ninefold.encodings.theory import theory_of
 from ninefold.errors import BadInput, NinefoldError
+from ninefold.reasoner.networks.scenario import Scenario
 from ninefold.reasoner.sets.relation import RCC8_OF_NAME, Relation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ninefold.encodings.model import BaseMeaning
-    from ninefold.reasoner.networks.scenario import Scenario
 
 __all__ = ["realize"]
 
@@ -80,11 +82,14 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     ----------
     With k islands and d demands O(d k n) to lay the islands, and n^2 / 2 calls of GEOS.
     """
-    if scenario.calculus not in (RCC8, RCC5):
+    if not isinstance(scenario, Scenario):
+        raise BadInput(_not_a_scenario(scenario))
+    known = theory_of(scenario.calculus).model
+    if known is None:
         raise BadInput(f"only regions can be drawn: scenarios of rcc8 and rcc5, not of {scenario.calculus.name}")
     if not scenario.is_closed():
         raise BadInput("some triangle of the scenario contradicts the composition table, so nothing can be drawn")
-    relations = _Relations(scenario)
+    relations = _Relations(scenario, known.value)
     states = _Islands(relations).lay()
     places, radii = _places(states, relations.radius), relations.radius
     shapes = {
@@ -94,14 +99,22 @@ def realize(scenario: Scenario) -> dict[str, Any]:
     return shapes
 
 
+def _not_a_scenario(given: object) -> str:
+    from ninefold.reasoner.networks.consistency import Consistent, Inconsistent, Unknown
+
+    if isinstance(given, Inconsistent | Unknown):
+        return f"realize takes the scenario of a consistent network, and this verdict is {quoted(given)}: it has none"
+    call = "verdict.scenario" if isinstance(given, Consistent) else "check(network).scenario"
+    return f"realize takes a scenario, not {quoted(given)}; call realize({call})"
+
+
 class _Relations:
     """A scenario as matrices, x by y."""
 
-    def __init__(self, scenario: Scenario) -> None:
-        names = scenario.calculus.bases
+    def __init__(self, scenario: Scenario, model: tuple[BaseMeaning, ...]) -> None:
         self.n = len(scenario.entities)
         self.bases = scenario.bases
-        self.model: tuple[BaseMeaning, ...] = RCC8_MODEL if len(names) == len(RCC8_MODEL) else RCC5_MODEL
+        self.model = model
         self.passes_half = self._where("TPP", "PP", "EQ")
         self.passes_both = self._where("NTPP")
         self.no_point = self._where("DC")
@@ -254,5 +267,5 @@ def _confirm(scenario: Scenario, shapes: list[Any]) -> None:
         found = name if fine else _COARSE.get(name, name)
         wanted = scenario.calculus.bases[int(scenario.bases[a, b])]
         if found != wanted:
-            pair = f"{scenario.entities[a]!r} and {scenario.entities[b]!r}"
+            pair = f"{quoted(scenario.entities[a])} and {quoted(scenario.entities[b])}"
             raise NinefoldError(f"the drawing of {pair} is {found} by GEOS and {wanted} in the scenario; please report this")

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
@@ -75,7 +76,7 @@ def region_rings(drawing: Drawing, region: Region) -> list[list[NDArray[Any]]]:
 
 
 def _not_plane(region: Region) -> BadInput:
-    return BadInput(f"{region!r} has no outline in this drawing: its points do not draw the map; check it with verify")
+    return BadInput(f"{quoted(region)} has no outline in this drawing: its points do not draw the map; check it with verify")
 
 
 def _wedge_walks(region: Region) -> list[list[int]]:

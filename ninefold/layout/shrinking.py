@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ninefold.mapping import Line, PlaneMap, Point, Region
+from ninefold.mapping import Edge, Face, Line, PlaneMap, Point, Region, Vertex
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -157,7 +157,7 @@ def without_edges(pair: tuple[Set, Set], edges: Sequence[int]) -> tuple[Set, Set
     return _restricted(pair, kept, tether)
 
 
-def _prune(plane: PlaneMap, kept: NDArray[np.bool_], tether: NDArray[np.bool_], needed: set[int]) -> None:
+def _prune(plane: PlaneMap, kept: NDArray[np.bool_], tether: NDArray[np.bool_], needed: set[Vertex]) -> None:
     """Drop, in `kept`, the tethers that end at a vertex with nothing else, one after the other."""
     spokes: dict[int, set[int]] = {v: set() for v in range(plane.n_vertices)}
     for d in np.flatnonzero(np.repeat(kept, 2)).tolist():
@@ -206,7 +206,7 @@ def _merged_faces(plane: PlaneMap, dropped: NDArray[np.bool_]) -> NDArray[np.int
 def _without_vertex(pair: tuple[Set, Set], v: int) -> tuple[Set, Set] | None:
     """Join the two edges at a vertex of degree two; None where that cannot be, or where it would change a set."""
     plane = pair[0].plane
-    at = plane.darts_at(v)
+    at = plane.darts_at(Vertex(v))
     if len(at) != 2 or at[0] >> 1 == at[1] >> 1 or plane.tether[[d >> 1 for d in at]].any():
         return None
     for s in pair:
@@ -257,10 +257,10 @@ def _sub_map(
     def carried(s: Set) -> Set:
         match s:
             case Point():
-                return Point(smaller, int(np.searchsorted(vertices, s.index)))
+                return Point(smaller, Vertex(int(np.searchsorted(vertices, s.index))))
             case Line():
-                return Line(smaller, tuple(int(row[e]) for e in s.edges if kept[e]))
+                return Line(smaller, tuple(Edge(int(row[e])) for e in s.edges if kept[e]))
             case Region():
-                return Region.from_faces(smaller, [f for f in range(smaller.n_faces) if s.has_face(int(old_face[f]))])
+                return Region.from_faces(smaller, [f for f in range(smaller.n_faces) if s.has_face(Face(int(old_face[f])))])
 
     return carried(pair[0]), carried(pair[1])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
@@ -38,6 +39,7 @@ TIPS_UP_TO = 3000
 
 _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif"
 _UNFIT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_PARSE = "plane.parse makes a set of text"
 _PAD = 28.0
 _HATCH = (None, 45, -45, 0, 90, 22, -22)
 _DASH = ("none", "10 8", "3 6", "14 6", "6 6", "2 4", "12 4 3 4")
@@ -54,7 +56,7 @@ def render(
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
-        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {theme!r}")
+        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {quoted(theme)}")
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
@@ -86,6 +88,8 @@ def render(
 def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | Set | None) -> list[tuple[str, Set]]:
     """Return the highlighted sets with the names the legend gives them, checked against the drawing's map.
 
+    Without sets given, those that the drawing itself highlights.
+
     Raises
     ------
     BadInput, DifferentMaps
@@ -93,18 +97,20 @@ def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | 
     """
     match highlight:
         case None:
-            return []
+            pairs = list(drawing.highlight)
         case Point() | Line() | Region():
             pairs = [("X", highlight)]
         case Mapping():
             pairs = [(str(name), x) for name, x in highlight.items()]
+        case _ if isinstance(highlight, str) or not isinstance(highlight, Iterable):
+            raise BadInput(f"highlight takes sets of the map, as in highlight=[room], not {quoted(highlight)}; {_PARSE}")
         case _:
             pairs = list(zip("XYZABCDEFGHIJKLMNOPQRSTUVW", highlight, strict=False))
     if len(pairs) > len(ROLES):
         raise BadInput(f"a picture has {len(ROLES)} colours to tell apart, and {len(pairs)} sets were given; draw fewer")
     for _, x in pairs:
         if not isinstance(x, Point | Line | Region):
-            raise BadInput(f"only points, lines and regions of the map can be highlighted, not {x!r}")
+            raise BadInput(f"only points, lines and regions of the map can be highlighted, not {quoted(x)}; {_PARSE}")
         drawing.require_mine(x)
     return pairs
 
@@ -297,21 +303,16 @@ def _kind(s: Set) -> str:
         case Point():
             return f"vertex {s.name}"
         case Line():
-            return f"line of {_count(len(s.edges), 'edge')}"
+            return f"line of {counted(len(s.edges), 'edge')}"
         case Region():
-            return f"region of {_count(s.n_faces, 'face')}"
-
-
-def _count(number: int, one: str) -> str:
-    return f"{number:,} {one}{'' if number == 1 else 's'}"
+            return f"region of {counted(s.n_faces, 'face')}"
 
 
 def _counts(drawing: Drawing) -> str:
     plane = drawing.plane
-    vertices = "1 vertex" if plane.n_vertices == 1 else f"{plane.n_vertices:,} vertices"
-    parts = [vertices, _count(plane.n_edges, "edge"), _count(plane.n_faces, "face")]
+    parts = [counted(plane.n_vertices, "vertex", "vertices"), counted(plane.n_edges, "edge"), counted(plane.n_faces, "face")]
     if plane.n_components > 1:
-        parts.append(f"{plane.n_components:,} components")
+        parts.append(counted(plane.n_components, "component"))
     return ", ".join(parts)
 
 

@@ -21,6 +21,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .theme import ROLES, THEMES, style_sheet
@@ -60,7 +61,7 @@ def witness_svg(
     if not shapes:
         raise BadInput("there is no region to draw")
     if theme not in THEMES:
-        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {theme!r}")
+        raise BadInput(f"theme is one of {', '.join(THEMES)}, not {quoted(theme)}")
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     page = _Page(list(shapes.values()), width, 44.0 if title else 0.0)

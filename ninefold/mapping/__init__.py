@@ -8,7 +8,8 @@ counter-clockwise and a face lies on the left of its darts.
 whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
-**The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces.
+**The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
+and `Face` are types for the numbers that index the arrays of a map.
 
 Nothing here imports shapely, and only `from_geometry` and the simulated world ever see a coordinate. The names load when
 they are first used.
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
+    from .numbering import Dart, Edge, Face, Vertex
     from .plane import PlaneMap
     from .robot.mapper import Closure, Mapper, build
     from .robot.simulated import Exploration, SimulatedWorld, explore
@@ -32,8 +34,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Closure",
+    "Dart",
+    "Edge",
     "Event",
     "Exploration",
+    "Face",
     "Heading",
     "Line",
     "Mapper",
@@ -44,6 +49,7 @@ __all__ = [
     "Samples",
     "Set",
     "SimulatedWorld",
+    "Vertex",
     "Visit",
     "Walk",
     "WalkHeader",
@@ -63,6 +69,7 @@ __getattr__, __dir__ = attach(
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),
+        "numbering": ("Dart", "Edge", "Face", "Vertex"),
         "plane": ("PlaneMap",),
         "robot.mapper": ("Closure", "Mapper", "build"),
         "robot.simulated": ("Exploration", "SimulatedWorld", "explore"),

@@ -127,7 +127,7 @@ def contour(next_face, face_of, in_tree, outer, n_faces):  # type: ignore[no-unt
 
 @kernel
 def sort_rotation(tail, heading, n_vertices):  # type: ignore[no-untyped-def]
-    """Sort the darts at each vertex by heading: counting sort by vertex, then insertion sort of each short list.
+    """Sort the darts at each vertex by heading: counting sort by vertex, then Shell sort of each list, short ones at gap 1.
 
     Returns (next_ccw (2E,) int32, closest (float), at (int)): the smallest angle between two successive darts of one
     vertex and one of those darts (-1 if no vertex has two).
@@ -138,7 +138,9 @@ def sort_rotation(tail, heading, n_vertices):  # type: ignore[no-untyped-def]
         start[tail[d] + 1] += 1
     for v in range(n_vertices):
         start[v + 1] += start[v]
-    fill = start[:-1].copy()
+    fill = np.empty(n_vertices, np.int64)
+    for v in range(n_vertices):
+        fill[v] = start[v]
     order = np.empty(n, np.int32)
     for d in range(n):
         order[fill[tail[d]]] = d
@@ -149,18 +151,20 @@ def sort_rotation(tail, heading, n_vertices):  # type: ignore[no-untyped-def]
     for v in range(n_vertices):
         a = start[v]
         b = start[v + 1]
+        gap = 1
         if b - a > 48:
-            part = order[a:b].copy()
-            order[a:b] = part[np.argsort(heading[part])]
-        else:
-            for i in range(a + 1, b):
+            while 3 * gap < b - a:
+                gap = 3 * gap + 1
+        while gap > 0:
+            for i in range(a + gap, b):
                 x = order[i]
                 h = heading[x]
-                j = i - 1
+                j = i - gap
                 while j >= a and heading[order[j]] > h:
-                    order[j + 1] = order[j]
-                    j -= 1
-                order[j + 1] = x
+                    order[j + gap] = order[j]
+                    j -= gap
+                order[j + gap] = x
+            gap //= 3
         for i in range(a, b):
             x = order[i]
             y = order[i + 1] if i + 1 < b else order[a]

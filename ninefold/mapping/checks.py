@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, NotPlane
+from ninefold.immutable import Immutable
 
 from . import _orbits
 from .genus import offending_part
@@ -25,6 +27,7 @@ __all__ = [
     "component_walks",
     "components_without_tethers",
     "derive",
+    "face_labels",
     "face_permutation",
     "first_darts",
     "outer_dart",
@@ -33,7 +36,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Derived:
+class Derived(Immutable):
     """Everything that follows from tail and next_ccw alone.
 
     Attributes
@@ -74,23 +77,22 @@ def derive(tail: NDArray[np.int32], next_ccw: NDArray[np.int32], vertex_names: N
     rank, first, bad = _orbits.rotation_ranks.for_work(size)(tail, next_ccw, n_vertices)
     if bad >= 0:
         raise BadInput(
-            f"next_ccw is no rotation system: around vertex {vertex_names[int(tail[bad])]!r} the darts do not form "
+            f"next_ccw is no rotation system: around vertex {quoted(vertex_names[int(tail[bad])])} the darts do not form "
             f"one cycle (see dart {int(bad)})"
         )
     next_face = face_permutation(next_ccw)
-    face_of, n_faces = _orbits.face_labels.for_work(size)(next_face)
+    face_of, n_faces = face_labels(next_face)
     in_tree, component, n_components = _orbits.spanning_forest.for_work(size)(tail, next_ccw, first)
     isolated = int((first < 0).sum())
-    n_faces = int(n_faces)
     # Each component on its own sphere: V - E + F = 2 per component, an isolated vertex counting one face.
     genus2 = 2 * int(n_components) - (n_vertices - size // 2 + n_faces + isolated)
     if genus2:
         edges, shortest = offending_part(tail.tolist(), next_ccw.tolist(), first.tolist())
         real = [edge_names[e] for e in edges if e < len(edge_names)]
-        shown = ", ".join(real[:12]) + (f", ... ({len(real)} edges)" if len(real) > 12 else "")
+        shown = ", ".join(real[:12]) + (f", ... ({counted(len(real), 'edge')})" if len(real) > 12 else "")
         raise NotPlane(
             f"the rotation system has genus {genus2 // 2}, so no drawing in the plane has it; "
-            f"{'a shortest' if shortest else 'an'} offending part is the edges {shown}",
+            f"{'a shortest' if shortest else 'an'} offending part is the edge{'' if len(real) == 1 else 's'} {shown}",
             genus=genus2 // 2,
             edges=real,
         )
@@ -104,6 +106,12 @@ def face_permutation(next_ccw: NDArray[np.int32]) -> NDArray[np.int32]:
     previous = np.empty(next_ccw.size, np.int32)
     previous[next_ccw] = np.arange(next_ccw.size, dtype=np.int32)
     return np.ascontiguousarray(previous.reshape(-1, 2)[:, ::-1].reshape(-1))
+
+
+def face_labels(next_face: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:
+    """Return the face on each dart's left, (2E,) int32, numbered by lowest dart, and how many there are. O(E)."""
+    labels, count = _orbits.face_labels.for_work(next_face.size)(next_face)
+    return labels, int(count)
 
 
 def strip_tethers(next_ccw: NDArray[np.int32], tether: NDArray[np.bool_]) -> NDArray[np.int32]:
@@ -136,7 +144,8 @@ def components_without_tethers(
     _, component, count = forest(tail, strip_tethers(next_ccw, tether), first)
     if count - 1 != int(tether.sum()):
         raise BadInput(
-            f"{int(tether.sum())} tethers for {count} components: tethers must be bridges, one fewer than components"
+            f"{counted(int(tether.sum()), 'tether')} for {counted(int(count), 'component')}: tethers must be bridges, one "
+            "fewer than components"
         )
     return np.asarray(component, dtype=np.int32)
 
@@ -180,15 +189,15 @@ def component_walks(
     if tether.any():
         rotation = strip_tethers(next_ccw, tether)
         next_face = face_permutation(rotation)
-        face_of, n_faces = _orbits.face_labels.for_work(tail.size)(next_face)
+        face_of, n_faces = face_labels(next_face)
     corner = corner_angles(rotation, heading)
     corner[~real] = 0.0
     wrong = np.flatnonzero(np.bincount(tail, weights=corner, minlength=component.size) > 1.5 * TAU)
     if wrong.size:
         dart = int(np.flatnonzero(real & (tail == wrong[0]))[0])
         raise NotPlane(
-            f"the headings at the tail of edge {edge_names[dart >> 1]!r} do not increase counter-clockwise in the order "
-            "of the rotation; sort the rotation by heading, or leave the headings out"
+            f"the headings at the tail of edge {quoted(edge_names[dart >> 1])} do not increase counter-clockwise in the "
+            "order of the rotation; sort the rotation by heading, or leave the headings out"
         )
     lowest = first_darts(face_of, int(n_faces))
     settled = settle_turns(heading, turn)
@@ -199,8 +208,8 @@ def component_walks(
     if odd.size:
         edge = edge_names[int(lowest[odd[0]]) >> 1]
         raise NotPlane(
-            f"the face along edge {edge!r} turns {int(turns[odd[0]]):+d} times, and in a plane drawing every face turns "
-            "exactly once: a closure or a heading is wrong, or edges cross"
+            f"the face along edge {quoted(edge)} turns {int(turns[odd[0]]):+d} times, and in a plane drawing every face "
+            "turns exactly once: a closure or a heading is wrong, or edges cross"
         )
     outer = np.bincount(component[tail[lowest[turns < 0]]], minlength=int(component.max()) + 1)
     has_edge = np.zeros(outer.size, np.bool_)
@@ -209,8 +218,8 @@ def component_walks(
     if bad.size:
         dart = int(np.flatnonzero(real & (component[tail] == bad[0]))[0])
         raise NotPlane(
-            f"{int(outer[bad[0]])} faces of the part with edge {edge_names[dart >> 1]!r} turn clockwise, and in a plane "
-            "drawing exactly one does, the outer face: a closure or a heading is wrong, or edges cross"
+            f"{int(outer[bad[0]])} faces of the part with edge {quoted(edge_names[dart >> 1])} turn clockwise, and in a "
+            "plane drawing exactly one does, the outer face: a closure or a heading is wrong, or edges cross"
         )
     return Walks(lowest, turns < 0)
 

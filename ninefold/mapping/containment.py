@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold.immutable import Immutable, freeze
+
 from . import _orbits
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ __all__ = ["ContainmentIndex", "ends_of_numbers", "numbers_of_ends"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ContainmentIndex:
+class ContainmentIndex(Immutable):
     """Preorder numbers of the faces and the interval below each cotree edge.
 
     Attributes
@@ -56,14 +58,14 @@ class ContainmentIndex:
     ) -> ContainmentIndex:
         """Build the index of a connected map. Complexity O(E)."""
         if outer < 0:
-            zero = np.zeros(1, np.int32)
-            return cls(zero, zero, np.zeros(0, np.int32), np.zeros(0, np.int32))
+            zero, none = np.zeros(1, np.int32), np.zeros(0, np.int32)
+            freeze(zero, none)
+            return cls(zero, zero, none, none)
         walk = _orbits.contour.for_work(next_face.size)
         preorder, low, high = walk(next_face, face_of, in_tree, outer, n_faces)
         face_at = np.empty(n_faces, np.int32)
         face_at[preorder] = np.arange(n_faces, dtype=np.int32)
-        for array in (preorder, face_at, low, high):
-            array.setflags(write=False)
+        freeze(preorder, face_at, low, high)
         return cls(preorder, face_at, low, high)
 
     def inside(self, edges: NDArray[np.int64]) -> NDArray[np.int32]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from . import _orbits, checks
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["GeometricDarts", "bearings", "checked_edges", "checked_points", "darts_of_geometry", "rotation_by_heading"]
 
 _CLOSEST = 1e-12
+
+LARGEST_COORDINATE = 1e150
+"""Beyond it the product of two differences of coordinates, which says how two edges turn, overflows."""
 
 
 class GeometricDarts(NamedTuple):
@@ -55,6 +59,11 @@ class GeometricDarts(NamedTuple):
     derived: checks.Derived | None
 
 
+_TOO_FAR = (
+    f"lies so far out that differences of coordinates cannot be computed with; coordinates go up to {LARGEST_COORDINATE:g}"
+)
+
+
 def darts_of_geometry(
     points: ArrayLike,
     edges: ArrayLike,
@@ -68,7 +77,8 @@ def darts_of_geometry(
     Raises
     ------
     BadInput
-        For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+        For coordinates that are not finite or beyond `LARGEST_COORDINATE`, edges without length, two edges that leave a
+        vertex in one direction.
     """
     xy, ends = checked_points(points), checked_edges(edges)
     n_vertices, n_edges = len(xy), len(ends)
@@ -104,6 +114,9 @@ def checked_points(points: ArrayLike) -> NDArray[np.float64]:
         raise BadInput(f"points must have shape (V, 2) with V at least 1, not {xy.shape}")
     if not np.isfinite(xy).all():
         raise BadInput(f"point {int(np.flatnonzero(~np.isfinite(xy).all(axis=1))[0])} is not finite")
+    if float(np.abs(xy).max()) > LARGEST_COORDINATE:
+        at = int(np.flatnonzero((np.abs(xy) > LARGEST_COORDINATE).any(axis=1))[0])
+        raise BadInput(f"point {at}, ({xy[at, 0]:g}, {xy[at, 1]:g}), {_TOO_FAR}")
     return xy
 
 
@@ -157,7 +170,7 @@ def bearings(
     spike = np.flatnonzero(_inner_bends(start, len(bend)) & (np.abs(bend) > np.pi - 1e-12))
     if spike.size:
         e = int(np.searchsorted(start, spike[0], side="right")) - 1
-        raise BadInput(f"the path of edge {names[e]!r} turns back on itself; a path may not retrace its way")
+        raise BadInput(f"the path of edge {quoted(names[e])} turns back on itself; a path may not retrace its way")
     return heading, turn, line, start
 
 
@@ -181,11 +194,13 @@ def _polyline(
         try:
             line = np.asarray(path, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
-            raise BadInput(f"the path of edge {names[e]!r} must be a (k, 2) array of numbers") from None
+            raise BadInput(f"the path of edge {quoted(names[e])} must be a (k, 2) array of numbers") from None
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
-            raise BadInput(f"the path of edge {names[e]!r} must be finite points of shape (k, 2), k at least 2")
+            raise BadInput(f"the path of edge {quoted(names[e])} must be finite points of shape (k, 2), k at least 2")
+        if float(np.abs(line).max()) > LARGEST_COORDINATE:
+            raise BadInput(f"the path of edge {quoted(names[e])} {_TOO_FAR}")
         if not (np.array_equal(line[0], a) and np.array_equal(line[-1], b)):
-            raise BadInput(f"the path of edge {names[e]!r} does not begin and end at the points it joins")
+            raise BadInput(f"the path of edge {quoted(names[e])} does not begin and end at the points it joins")
         line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
     if len(line) < 2 or (len(line) == 2 and np.array_equal(line[0], line[1])):
         raise _no_length(names[e])
@@ -193,7 +208,7 @@ def _polyline(
 
 
 def _no_length(name: str) -> BadInput:
-    return BadInput(f"edge {name!r} has no length; drop it, merge its ends, or give a loop its path")
+    return BadInput(f"edge {quoted(name)} has no length; drop it, merge its ends, or give a loop its path")
 
 
 def rotation_by_heading(
@@ -203,8 +218,9 @@ def rotation_by_heading(
     next_ccw, closest, at = _orbits.sort_rotation.for_work(tail.size)(tail, heading, n_vertices)
     if closest < _CLOSEST:
         other = int(next_ccw[at])
+        first, second, vertex = e_names[int(at) >> 1], e_names[other >> 1], v_names[int(tail[at])]
         raise BadInput(
-            f"edges {e_names[int(at) >> 1]!r} and {e_names[other >> 1]!r} leave vertex {v_names[int(tail[at])]!r} in the "
+            f"edges {quoted(first)} and {quoted(second)} leave vertex {quoted(vertex)} in the "
             "same direction; merge them, or give the path of one a first piece of its own"
         )
     return np.asarray(next_ccw, dtype=np.int32)

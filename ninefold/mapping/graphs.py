@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
+from .numbering import Edge, Vertex
 from .select import darts_between
 from .sets import Line, Point, same_map
 
@@ -68,7 +70,7 @@ def to_networkx(plane: PlaneMap, kind: str = "multigraph") -> Any:
             graph.add_edge(names[int(ends[e, 0])], names[int(ends[e, 1])], key=plane.edge_names[e])
         return graph
     if kind != "embedding":
-        raise BadInput(f"kind is 'multigraph' or 'embedding', not {kind!r}")
+        raise BadInput(f"kind is 'multigraph' or 'embedding', not {quoted(kind)}")
     ordered = np.sort(ends, axis=1)
     if plane.tether.any() or len(np.unique(ordered, axis=0)) < len(ends) or (ends[:, 0] == ends[:, 1]).any():
         raise BadInput("a networkx.PlanarEmbedding has no parallel edges, loops or tethers; export kind='multigraph'")
@@ -76,7 +78,7 @@ def to_networkx(plane: PlaneMap, kind: str = "multigraph") -> Any:
     embedding.add_nodes_from(names)
     for v in range(plane.n_vertices):
         before = None
-        for d in reversed(plane.darts_at(v)):  # clockwise
+        for d in reversed(plane.darts_at(Vertex(v))):  # clockwise
             w = names[int(plane.tail[d ^ 1])]
             embedding.add_half_edge(names[v], w, ccw=before)  # w comes clockwise after `before`
             before = w
@@ -96,14 +98,16 @@ def shortest_path(source: Point, target: Point) -> Line:
 
     plane = same_map(source, target)
     if source.index == target.index:
-        raise BadInput(f"{source!r} and {target!r} are one vertex: there is no leg between them")
+        raise BadInput(f"{quoted(source)} and {quoted(target)} are one vertex: there is no leg between them")
     try:
         way = nx.bidirectional_shortest_path(to_networkx(plane), source.name, target.name)
     except nx.NetworkXNoPath:
-        raise BadInput(f"no path joins {source.name!r} and {target.name!r}: they are in separate components") from None
+        raise BadInput(
+            f"no path joins {quoted(source.name)} and {quoted(target.name)}: they are in separate components"
+        ) from None
     rows = [plane.vertex_names.row(name) for name in way]
     darts = tuple(min(darts_between(plane, u, v)) for u, v in pairwise(rows))
-    return Line(plane, tuple(sorted(d >> 1 for d in darts)), darts)
+    return Line(plane, tuple(Edge(d >> 1) for d in darts), darts)
 
 
 def bridges(plane: PlaneMap) -> tuple[str, ...]:

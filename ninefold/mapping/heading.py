@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -19,9 +20,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["TAU", "Heading", "circular_mean", "unwrap", "wrap"]
+__all__ = ["LARGEST_ANGLE", "TAU", "Heading", "circular_mean", "too_large_an_angle", "unwrap", "wrap"]
 
 TAU = 2 * math.pi
+
+LARGEST_ANGLE = 2.0**23
+"""Radians (1.3 million turns) beyond which a number is not taken for an angle. Up to here two neighbouring floats differ by
+less than 1e-9, the finest difference between headings that anything here looks at; beyond, rounding decides the direction.
+"""
 
 
 def wrap(angle: float) -> float:
@@ -53,7 +59,8 @@ def unwrap(samples: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64
     Raises
     ------
     BadInput
-        If a sample is not finite, or two successive samples differ by half a turn: the way between them is unknown.
+        If a sample is not finite or beyond `LARGEST_ANGLE`, or two successive samples differ by half a turn: the way between
+        them is unknown.
 
     Examples
     --------
@@ -77,7 +84,7 @@ def circular_mean(samples: Sequence[float] | NDArray[np.float64]) -> float:
     Raises
     ------
     BadInput
-        For no sample, samples that cancel out, or one that is not finite.
+        For no sample, samples that cancel out, or one that is not finite or beyond `LARGEST_ANGLE`.
 
     Examples
     --------
@@ -94,9 +101,43 @@ def circular_mean(samples: Sequence[float] | NDArray[np.float64]) -> float:
 
 def _finite(samples: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
     yaw = np.asarray(samples, dtype=np.float64)
-    if not np.isfinite(yaw).all():
-        raise BadInput(f"sample {int(np.flatnonzero(~np.isfinite(yaw))[0]) + 1} is no finite angle")
+    if not (np.abs(yaw) <= LARGEST_ANGLE).all():
+        at = int(np.flatnonzero(~(np.abs(yaw) <= LARGEST_ANGLE))[0])
+        raise BadInput(
+            f"sample {at + 1} is no finite angle"
+            if not np.isfinite(yaw[at])
+            else f"sample {at + 1}: {too_large_an_angle(yaw[at])}"
+        )
     return yaw
+
+
+def too_large_an_angle(radians: float) -> str:
+    """Say why a number is taken for no angle."""
+    return (
+        f"{radians:.6g} radians is too large for an angle: beyond {LARGEST_ANGLE:.0f} radians "
+        "the direction it gives is mere rounding"
+    )
+
+
+def _radians(value: float, what: str) -> float:
+    """Return a number that is an angle in radians, or say why it is none."""
+    try:
+        finite = not isinstance(value, bool) and math.isfinite(value)
+    except (TypeError, OverflowError):
+        finite = False
+    if not finite:
+        raise BadInput(f"{what} is a finite angle, not {quoted(value)}")
+    if abs(value) > LARGEST_ANGLE:
+        raise BadInput(f"{what} of {too_large_an_angle(value)}")
+    return float(value)
+
+
+def _from_degrees(value: float, what: str) -> float:
+    try:
+        radians = math.radians(value)
+    except (TypeError, OverflowError):
+        raise BadInput(f"{what} is a finite angle in degrees, not {quoted(value)}") from None
+    return _radians(radians, what)
 
 
 @dataclass(frozen=True, slots=True, order=False)
@@ -111,7 +152,7 @@ class Heading:
     Raises
     ------
     BadInput
-        If the value is not finite.
+        If the value is not finite, or beyond `LARGEST_ANGLE`.
 
     Examples
     --------
@@ -126,20 +167,17 @@ class Heading:
     yaw: float
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.yaw):
-            raise BadInput(f"a heading is a finite angle, not {self.yaw!r}")
-        object.__setattr__(self, "yaw", wrap(self.yaw))
+        object.__setattr__(self, "yaw", wrap(_radians(self.yaw, "a heading")))
 
     @classmethod
     def from_degrees(cls, degrees: float) -> Heading:
         """Make a heading from a yaw in degrees, counter-clockwise from east."""
-        return cls(math.radians(degrees))
+        return cls(_from_degrees(degrees, "a heading"))
 
     @classmethod
     def from_bearing(cls, degrees: float) -> Heading:
         """Make a heading from a compass bearing in degrees, clockwise from north."""
-        if not math.isfinite(degrees):
-            raise BadInput(f"a bearing is a finite angle, not {degrees!r}")
+        _from_degrees(degrees, "a bearing")
         return cls(math.radians(90.0 - math.fmod(degrees, 360.0)))
 
     @property

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from numbers import Integral
+from typing import Any
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, UnknownName
+from ninefold.immutable import Immutable
 
 __all__ = ["Names"]
 
 
-class Names(Sequence[str]):
+class Names(Immutable, Sequence[str]):
     """An immutable sequence of unique labels that can be looked up both ways.
 
     Row numbers ("0", "1", ...) take no memory: a map with a million edges keeps no million strings.
@@ -33,20 +36,35 @@ class Names(Sequence[str]):
 
     __slots__ = ("_labels", "_rows", "kind", "size")
 
+    kind: str
+    size: int
+    _labels: tuple[str, ...] | None
+    _rows: dict[str, int] | None
+
     def __init__(self, kind: str, size: int, labels: Iterable[str | int] | None = None) -> None:
-        self.kind = kind
-        self.size = size
-        self._labels: tuple[str, ...] | None = None
-        self._rows: dict[str, int] | None = None
+        given = None
         if labels is not None:
             given = tuple(_label(kind, label) for label in labels)
             if len(given) != size:
-                raise BadInput(f"{len(given)} {kind} names for {size}; give one each, or none")
-            rows = {label: row for row, label in enumerate(given)}
-            if len(rows) != size:
-                twice = next(label for row, label in enumerate(given) if rows[label] != row)
-                raise BadInput(f"the {kind} name {twice!r} is given twice; names must be unique")
-            self._labels, self._rows = given, rows
+                raise BadInput(f"{counted(len(given), f'{kind} name')} for {size}; give one each, or none")
+        self._set_state({"kind": kind, "size": size, "_labels": given})
+        if self._rows is not None and given is not None and len(self._rows) != size:
+            twice = next(label for row, label in enumerate(given) if self._rows[label] != row)
+            raise BadInput(f"the {kind} name {quoted(twice)} is given twice; names must be unique")
+
+    def _state(self) -> dict[str, Any]:
+        return {"kind": self.kind, "size": self.size, "_labels": self._labels}
+
+    def _set_state(self, state: dict[str, Any]) -> None:
+        labels = state["_labels"]
+        super()._set_state(state)
+        super()._set_state({"_rows": None if labels is None else {label: row for row, label in enumerate(labels)}})
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"names cannot be changed: {name!r} is read-only; make new Names instead")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"names cannot be changed: {name!r} is read-only; make new Names instead")
 
     @property
     def are_rows(self) -> bool:
@@ -110,12 +128,12 @@ class Names(Sequence[str]):
 
 def _label(kind: str, label: str | int) -> str:
     if isinstance(label, bool) or not isinstance(label, str | Integral):
-        raise BadInput(f"a {kind} name is a string, not {label!r}")
+        raise BadInput(f"a {kind} name is a string, not {quoted(label)}")
     text = _text(label)
     if any(0xD800 <= ord(c) < 0xE000 for c in text):
-        raise BadInput(f"the {kind} name {label!r} cannot be written as text: it holds half a character")
+        raise BadInput(f"the {kind} name {quoted(label)} cannot be written as text: it holds half a character")
     if not text or any(ord(c) < 32 for c in text):
-        raise BadInput(f"a {kind} name is printable text, not {label!r}")
+        raise BadInput(f"a {kind} name is printable text, not {quoted(label)}")
     return text
 
 

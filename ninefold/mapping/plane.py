@@ -13,12 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted
 from ninefold.errors import BadInput, NotPlane
+from ninefold.immutable import Immutable, freeze
 
 from . import checks, select
 from .containment import ContainmentIndex
-from .heading import TAU, Heading
+from .heading import LARGEST_ANGLE, TAU, Heading
 from .names import Names
+from .numbering import Dart, Face, Vertex
 from .rotation import read_rotation
 from .sets import Point
 
@@ -31,10 +34,14 @@ if TYPE_CHECKING:
 
 __all__ = ["PlaneMap"]
 
+_PICTURE_WORDS = ("draw", "plot", "show", "save", "to_svg", "svg", "points", "coordinates")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlaneMap:
+class PlaneMap(Immutable):
     """A plane map: rotation system plus outer face. Immutable; make one with a ``from_*`` constructor or a `Mapper`.
+
+    A map has no coordinates; ``ninefold.draw(plane)`` finds some and makes a picture, `ninefold.layout.draw` says more.
 
     Attributes
     ----------
@@ -67,7 +74,7 @@ class PlaneMap:
 
     tail: NDArray[np.int32]
     next_ccw: NDArray[np.int32]
-    outer: int
+    outer: Dart
     tether: NDArray[np.bool_]
     heading: NDArray[np.float64] | None
     turn: NDArray[np.float64] | None
@@ -121,7 +128,9 @@ class PlaneMap:
         tails = _ints("tail", tail)
         after = _ints("next_ccw", next_ccw)
         if tails.size % 2 or after.size != tails.size:
-            raise BadInput(f"tail has {tails.size} and next_ccw {after.size} entries; both need two for each edge")
+            raise BadInput(
+                f"tail has {counted(tails.size, 'entry', 'entries')} and next_ccw {after.size}; both need two for each edge"
+            )
         n_edges = tails.size // 2
         total = int(tails.max()) + 1 if tails.size else 0
         count = total if n_vertices is None else _whole("n_vertices", n_vertices)
@@ -133,14 +142,17 @@ class PlaneMap:
         if tails.size and (int(after.min()) < 0 or int(after.max()) >= tails.size):
             raise BadInput(f"next_ccw must hold darts from 0 to {tails.size - 1}")
         if count > max(1, 2 * n_edges):  # refused before anything is as large as such a number
-            raise BadInput(f"{n_edges} edges cannot join {count} vertices; tie separate components with tethers")
+            raise BadInput(f"{counted(n_edges, 'edge')} cannot join {count} vertices; tie separate components with tethers")
         virtual = np.zeros(n_edges, np.bool_) if tether is None else _array("tether", tether, np.bool_)
         if virtual.shape != (n_edges,):
             raise BadInput(f"tether has shape {virtual.shape}, not ({n_edges},)")
         v_names = vertex_names if isinstance(vertex_names, Names) else Names("vertex", count, vertex_names)
         e_names = edge_names if isinstance(edge_names, Names) else Names("edge", n_edges, edge_names)
         if (v_names.size, e_names.size) != (count, n_edges):
-            raise BadInput(f"{v_names.size} vertex and {e_names.size} edge names for {count} and {n_edges}")
+            raise BadInput(
+                f"{counted(v_names.size, 'vertex name')} and {counted(e_names.size, 'edge name')} for "
+                f"{counted(count, 'vertex', 'vertices')} and {counted(n_edges, 'edge')}; give one name each"
+            )
         angles = _angles(heading, turn, virtual)
         outer = None if outer is None else _whole("outer", outer)
         return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
@@ -172,11 +184,9 @@ class PlaneMap:
             components = checks.components_without_tethers(tail, next_ccw, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
-        found = (derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
-        for array in (tail, next_ccw, tether, heading, turn, *found):
-            if array is not None:
-                array.setflags(write=False)
-        return cls(tail, next_ccw, outer_dart, tether, heading, turn, vertex_names, edge_names, derived)
+        freeze(tail, next_ccw, tether, heading, turn)
+        freeze(derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
+        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, vertex_names, edge_names, derived)
 
     @classmethod
     def from_rotation(
@@ -257,7 +267,8 @@ class PlaneMap:
         Raises
         ------
         BadInput
-            For coordinates that are not finite, edges without length, two edges that leave a vertex in one direction.
+            For coordinates that are not finite or beyond 1e150, edges without length, two edges that leave a vertex in one
+            direction.
         NotPlane
             Where Euler's formula or the turning numbers show that edges cross. Crossings that leave both whole, such as a
             dead end across a street, are not searched for.
@@ -358,9 +369,9 @@ class PlaneMap:
         return self._derived.first
 
     @property
-    def outer_face(self) -> int:
+    def outer_face(self) -> Face:
         """The number of the outer face."""
-        return int(self.face_of[self.outer]) if self.outer >= 0 else 0
+        return Face(int(self.face_of[self.outer])) if self.outer >= 0 else Face(0)
 
     @cached_property
     def spokes(self) -> NDArray[np.int32]:
@@ -378,39 +389,41 @@ class PlaneMap:
         """The containment index, built at first use in O(E)."""
         return ContainmentIndex.build(self.next_face, self.face_of, self._derived.in_tree, self.outer, self.n_faces)
 
-    def darts_at(self, vertex: int) -> list[int]:
+    def darts_at(self, vertex: Vertex) -> list[Dart]:
         """Return the darts that leave a vertex (by number), counter-clockwise from its lowest, tethers included."""
         start = int(self.first_dart[vertex])
         if start < 0:
             return []
-        darts = [start]
+        darts = [Dart(start)]
         d = int(self.next_ccw[start])
         while d != start:
-            darts.append(d)
+            darts.append(Dart(d))
             d = int(self.next_ccw[d])
         return darts
 
-    def face_darts(self, face: int) -> list[int]:
+    def face_darts(self, face: Face) -> list[Dart]:
         """Return the darts of the walk around a face, the lowest first; tethers included."""
         if self.outer < 0:
             return []
         start = int(self._face_first[face])
-        darts = [start]
+        darts = [Dart(start)]
         d = int(self.next_face[start])
         while d != start:
-            darts.append(d)
+            darts.append(Dart(d))
             d = int(self.next_face[d])
         return darts
 
     @cached_property
     def _face_first(self) -> NDArray[np.int64]:
-        return checks.first_darts(self.face_of, self.n_faces)
+        first = checks.first_darts(self.face_of, self.n_faces)
+        freeze(first)
+        return first
 
     # -- sets ----------------------------------------------------------------------------------------------------------
 
     def vertex(self, name: str | int) -> Point:
         """Return the vertex of that name as a `Point`."""
-        return Point(self, self.vertex_names.row(name))
+        return Point(self, Vertex(self.vertex_names.row(name)))
 
     def edge(self, *names: str | int) -> Line:
         """Return one edge: ``edge("e7")`` or ``edge("@e7")`` by its own name, ``edge("v1", "v3")`` by its ends."""
@@ -440,7 +453,7 @@ class PlaneMap:
         """Return the set that a text names, such as ``cycle:v0,v1,v8,v7`` or ``edge:@e7``; see `select.parse`."""
         return select.parse(self, text)
 
-    def heading_of(self, dart: int) -> Heading:
+    def heading_of(self, dart: Dart) -> Heading:
         """Return the heading on leaving along a dart."""
         if self.heading is None or np.isnan(self.heading[dart]):
             raise BadInput(f"dart {dart} has no heading: the map was made without, or it is a tether")
@@ -506,10 +519,20 @@ class PlaneMap:
             parts.append(f"{self.n_components} components")
         return f"PlaneMap({', '.join(parts)})"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the same text, and how to get a picture."""
+        return f"<code>{self!r}</code><br><small>to see it: <code>ninefold.draw(plane)</code></small>"
+
+    if not TYPE_CHECKING:  # for people who look for a picture here; a type checker need not know
+
+        def __getattr__(self, name: str) -> Any:
+            hint = "; ninefold.draw(plane) makes a picture of a map" if name in _PICTURE_WORDS else ""
+            raise AttributeError(f"a PlaneMap has no attribute {name!r}{hint}", name=name, obj=self)
+
 
 def _counts(tails: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
     counts = np.bincount(tails, minlength=n_vertices).astype(np.int32)
-    counts.setflags(write=False)
+    freeze(counts)
     return counts
 
 
@@ -561,8 +584,9 @@ def _angles(
         )
     head[np.repeat(tether, 2)] = np.nan
     turns[tether] = np.nan
-    if not (np.isfinite(head[~np.repeat(tether, 2)]).all() and np.isfinite(turns[~tether]).all()):
-        raise BadInput("heading and turn must be finite radians")
+    given = np.concatenate([head[~np.repeat(tether, 2)], turns[~tether]])
+    if not (np.abs(given) <= LARGEST_ANGLE).all():
+        raise BadInput(f"heading and turn must be finite radians, at most {LARGEST_ANGLE:.0f} either way")
     head -= TAU * np.round(head / TAU)
     return head, turns
 

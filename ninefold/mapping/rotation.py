@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import AmbiguousDart, BadInput, UnknownName
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def read_rotation(
     tail: list[int] = []
     for u, (vertex, entries) in enumerate(rotation.items()):
         if isinstance(entries, str):
-            raise BadInput(f"the neighbours of {vertex!r} are a string; give a list of names")
+            raise BadInput(f"the neighbours of {quoted(vertex)} are a string; give a list of names")
         star: list[int] = []
         for entry in entries:
             other, label = _entry(entry)
@@ -72,7 +73,9 @@ def read_rotation(
             if known:
                 e, source = known[0]
                 if source == u and other != names[u]:
-                    raise AmbiguousDart(f"{names[u]!r} lists {other!r} twice; name parallel edges, as in ({other!r}, 'e1')")
+                    raise AmbiguousDart(
+                        f"{quoted(names[u])} lists {quoted(other)} twice; name parallel edges, as in ({quoted(other)}, 'e1')"
+                    )
                 dart = 2 * e + 1
             else:
                 e, dart = len(labels), 2 * len(labels)
@@ -84,7 +87,7 @@ def read_rotation(
     for (_, label), known in ends.items():
         if len(known) == 1:
             a, b = (names[v] for v in tail[2 * known[0][0] : 2 * known[0][0] + 2])
-            raise BadInput(f"the edge {_show(a, b, label)} is mentioned at {a!r} but not at {b!r}")
+            raise BadInput(f"the edge {_show(a, b, label)} is mentioned at {quoted(a)} but not at {quoted(b)}")
     next_ccw = np.empty(len(tail), np.int64)
     for star in stars:
         for at, dart in enumerate(star):
@@ -99,11 +102,11 @@ def _entry(entry: Any) -> Entry:
         return str(entry), None
     if isinstance(entry, tuple | list) and len(entry) == 2:
         return str(entry[0]), str(entry[1])
-    raise BadInput(f"{entry!r} is neither a neighbour nor a pair (neighbour, edge name)")
+    raise BadInput(f"{quoted(entry)} is neither a neighbour nor a pair (neighbour, edge name)")
 
 
 def _show(u: str, v: str, label: str | None) -> str:
-    return f"{u!r} - {v!r}" + (f" ({label!r})" if label is not None else "")
+    return f"{quoted(u)} - {quoted(v)}" + (f" ({quoted(label)})" if label is not None else "")
 
 
 def _edge_names(labels: list[str | None]) -> list[str] | None:
@@ -128,7 +131,7 @@ def _outer_dart(
     if isinstance(outer, Integral) and not isinstance(outer, bool):
         return int(outer)
     if not isinstance(outer, tuple | list) or len(outer) not in (2, 3):
-        raise BadInput(f"outer is a dart, (from, to) or (from, to, edge name), not {outer!r}")
+        raise BadInput(f"outer is a dart, (from, to) or (from, to, edge name), not {quoted(outer)}")
     u, v = (str(name) for name in outer[:2])
     for name in (u, v):
         if name not in row:
@@ -141,9 +144,9 @@ def _outer_dart(
         and (len(outer) == 2 or (edge_names[d >> 1] if edge_names else str(d >> 1)) == str(outer[2]))
     ]
     if not found:
-        raise BadInput(f"outer = {tuple(outer)!r}: there is no such edge")
+        raise BadInput(f"outer = {quoted(tuple(outer))}: there is no such edge")
     if len(found) > 1:
         raise AmbiguousDart(
-            f"outer = {tuple(outer)!r} is one of the darts {found}; add the edge name, or give the dart's number"
+            f"outer = {quoted(tuple(outer))} is one of the darts {found}; add the edge name, or give the dart's number"
         )
     return found[0]

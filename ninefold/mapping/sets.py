@@ -13,13 +13,18 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from numbers import Integral
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from ninefold._wording import counted, quoted, shortened
 from ninefold.errors import BadInput, DifferentMaps, EmptySet
+from ninefold.immutable import Immutable, freeze, frozen_copy
 
+from ._texts import written
 from .containment import ends_of_numbers, numbers_of_ends
+from .numbering import Dart, Edge, Face, Vertex
 from .split import faces_beside
 from .trails import trails
 
@@ -34,7 +39,7 @@ __all__ = ["Line", "Point", "Region", "Set", "same_map"]
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class Point(Immutable):
     """A vertex of a map.
 
     Attributes
@@ -43,12 +48,26 @@ class Point:
         The map.
     index
         The vertex number.
+
+    Raises
+    ------
+    BadInput
+        If the map has no vertex of that number.
     """
 
     plane: PlaneMap = field(repr=False)
-    index: int
+    index: Vertex
 
     dimension = 0
+
+    def __post_init__(self) -> None:
+        index = _number(self.index, "a vertex number")
+        if not 0 <= index < self.plane.n_vertices:
+            raise BadInput(
+                f"{self.plane!r} has no vertex number {index}: they run from 0 to {self.plane.n_vertices - 1}; "
+                "plane.vertex finds one by name"
+            )
+        object.__setattr__(self, "index", index)
 
     def __hash__(self) -> int:
         return hash(self.index)  # not of the map, whose hash reads every dart
@@ -61,14 +80,14 @@ class Point:
     @property
     def text(self) -> str:
         """The text form that `PlaneMap.parse` reads back."""
-        return f"vertex:{self.name}"
+        return written("vertex", [self.name])
 
     def __repr__(self) -> str:
         return f"Point({self.name})"
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Line(Immutable):
     """A set of edges.
 
     Attributes
@@ -76,49 +95,75 @@ class Line:
     plane
         The map.
     edges
-        Edge numbers, ascending, each once, none a tether.
+        Edge numbers, none a tether. They may be given in any order and more than once; they are kept ascending, each once.
     darts
         The darts in order where the line was made as a path, else None. Two lines with the same edges are equal.
+
+    Raises
+    ------
+    BadInput, EmptySet
+        For an edge number the map does not have, a tether, no edge at all, or darts that are not one walk along exactly
+        these edges.
     """
 
     plane: PlaneMap = field(repr=False)
-    edges: tuple[int, ...]
-    darts: tuple[int, ...] | None = None
+    edges: tuple[Edge, ...]
+    darts: tuple[Dart, ...] | None = None
 
     dimension = 1
 
+    def __post_init__(self) -> None:
+        plane = self.plane
+        edges = tuple(sorted({_number(e, "an edge number") for e in _several(self.edges, "edges")}))
+        if not edges:
+            raise EmptySet("a line needs at least one edge")
+        if edges[0] < 0 or edges[-1] >= plane.tether.size:
+            wrong = edges[0] if edges[0] < 0 else edges[-1]
+            raise BadInput(
+                f"{plane!r} has no edge number {wrong}: they run from 0 to {plane.tether.size - 1}; "
+                "plane.line finds edges by name"
+            )
+        virtual = plane.tether[list(edges)]
+        if virtual.any():
+            raise BadInput(f"edge number {edges[int(virtual.argmax())]} is a tether, which belongs to no set")
+        object.__setattr__(self, "edges", edges)
+        if self.darts is not None:
+            darts = tuple(_number(d, "a dart number") for d in _several(self.darts, "darts"))
+            _require_walk(plane, darts, edges)
+            object.__setattr__(self, "darts", darts)
+
     @cached_property
-    def star(self) -> dict[int, int]:
+    def star(self) -> dict[Vertex, int]:
         """Vertex to the mask of its darts (by rank) that lie in the line, for every vertex of the line."""
         tail, rank = self.plane.tail, self.plane.rank
-        star: dict[int, int] = {}
+        star: dict[Vertex, int] = {}
         darts = np.array(self.edges, np.int64)[:, None] * 2 + np.array([0, 1])
         for v, r in zip(tail[darts].ravel().tolist(), rank[darts].ravel().tolist(), strict=True):
             star[v] = star.get(v, 0) | 1 << r
         return star
 
     @cached_property
-    def boundary(self) -> frozenset[int]:
+    def boundary(self) -> frozenset[Vertex]:
         """The vertices of odd degree in the line."""
         return frozenset(v for v, darts in self.star.items() if darts.bit_count() % 2)
 
     @property
-    def vertices(self) -> frozenset[int]:
+    def vertices(self) -> frozenset[Vertex]:
         """Every vertex of the line, boundary or not."""
         return frozenset(self.star)
 
     @cached_property
-    def edge_set(self) -> frozenset[int]:
+    def edge_set(self) -> frozenset[Edge]:
         """The edges as a set."""
         return frozenset(self.edges)
 
     @cached_property
-    def pieces(self) -> tuple[frozenset[int], ...]:
+    def pieces(self) -> tuple[frozenset[Vertex], ...]:
         """The vertex sets of the connected pieces, by lowest vertex."""
         return _pieces(self.plane, [2 * e for e in self.edges])
 
     @cached_property
-    def trails(self) -> tuple[tuple[int, ...], ...]:
+    def trails(self) -> tuple[tuple[Dart, ...], ...]:
         """The fewest walks, as darts, that cover the line; see `ninefold.mapping.trails`."""
         return trails(self)
 
@@ -130,15 +175,15 @@ class Line:
 
     @property
     def text(self) -> str:
-        """The text form that `PlaneMap.parse` reads back (not where a name has a comma: use lists then)."""
-        return "line:" + ",".join(f"@{name}" for name in self.edge_names)
+        """The text form that `PlaneMap.parse` reads back."""
+        return written("line", [f"@{name}" for name in self.edge_names])
 
     def __or__(self, other: Line) -> Line:
         """Return the union of two lines of one map."""
         if not isinstance(other, Line):
             return NotImplemented
         same_map(self, other)
-        return Line(self.plane, tuple(sorted(self.edge_set | other.edge_set)))
+        return Line(self.plane, tuple(self.edge_set | other.edge_set))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Line):
@@ -153,7 +198,7 @@ class Line:
 
 
 @dataclass(frozen=True, eq=False)
-class Region:
+class Region(Immutable):
     """A union of bounded faces as a regular closed set; make one with `PlaneMap.cycle`, `face` or `region`.
 
     Attributes
@@ -165,6 +210,12 @@ class Region:
         of ends is at most its number. 2 ends an interval.
     darts
         (k,) int64, ascending: the boundary darts, the region on their left.
+
+    Raises
+    ------
+    BadInput, EmptySet
+        If the ends are no rising even number of places between bounded faces, or the darts are not the whole boundary of
+        the faces inside.
     """
 
     plane: PlaneMap = field(repr=False)
@@ -173,21 +224,45 @@ class Region:
 
     dimension = 2
 
+    def __post_init__(self) -> None:
+        plane = self.plane
+        ends, darts = _numbers(self.ends, "ends"), np.sort(_numbers(self.darts, "darts"))
+        if not ends.size:
+            raise EmptySet("a region needs at least one face")
+        if ends.size % 2 or ends[0] < 1 or ends[-1] > plane.n_faces or (np.diff(ends) <= 0).any():
+            raise BadInput(
+                f"the ends of a region are an even number of rising numbers from 1 to {plane.n_faces}, not "
+                f"{quoted(ends.tolist())}; plane.region makes a region of faces, plane.cycle one of a cycle"
+            )
+        if not _bounds(plane, ends, darts):
+            raise BadInput(
+                f"the darts {quoted(darts.tolist())} are not the boundary of the faces inside the ends "
+                f"{quoted(ends.tolist())}; plane.region makes a region of faces, plane.cycle one of a cycle"
+            )
+        object.__setattr__(self, "ends", frozen_copy(ends.astype(np.int32)))
+        object.__setattr__(self, "darts", frozen_copy(darts))
+
+    @classmethod
+    def _trusted(cls, plane: PlaneMap, ends: NDArray[np.int32], darts: NDArray[np.int64]) -> Region:
+        """Make a region of arrays that are known to be right and that nobody else holds."""
+        freeze(ends, darts)
+        region = cls.__new__(cls)
+        for name, value in (("plane", plane), ("ends", ends), ("darts", darts)):
+            object.__setattr__(region, name, value)
+        return region
+
     @classmethod
     def from_ends(cls, plane: PlaneMap, ends: NDArray[np.int32], candidates: NDArray[np.int64]) -> Region:
         """Make the region of these interval ends, whose boundary edges are among the `candidates` (edge numbers)."""
         both = np.concatenate([2 * candidates, 2 * candidates + 1])
         left = _inside(plane, ends, plane.face_of[both])
         right = _inside(plane, ends, plane.face_of[both ^ 1])
-        darts = np.sort(both[left & ~right])
-        ends.setflags(write=False)
-        darts.setflags(write=False)
-        return cls(plane, ends, darts)
+        return cls._trusted(plane, ends, np.sort(both[left & ~right]))
 
     @classmethod
     def from_faces(cls, plane: PlaneMap, faces: Iterable[int]) -> Region:
         """Make the union of bounded faces, given by number. O(E) for the boundary."""
-        given = list(faces)
+        given = [_number(face, "a face number") for face in _several(faces, "faces")]
         wrong = next((face for face in given if not 0 <= face < plane.n_faces), None)
         if wrong is not None:
             raise BadInput(f"faces are numbered from 0 to {plane.n_faces - 1}; got {wrong}")
@@ -203,7 +278,7 @@ class Region:
         edges = np.flatnonzero(left[0::2] != left[1::2])
         return cls.from_ends(plane, ends, edges)
 
-    def has_face(self, face: int) -> bool:
+    def has_face(self, face: Face) -> bool:
         """Say whether a face is in the region: one binary search."""
         return bool(bisect_right(self._ends, int(self.plane.containment.preorder[face])) & 1)
 
@@ -212,7 +287,7 @@ class Region:
         return self.ends.tolist()  # type: ignore[no-any-return]
 
     @cached_property
-    def faces(self) -> tuple[int, ...]:
+    def faces(self) -> tuple[Face, ...]:
         """The faces inside, ascending. O(area)."""
         return tuple(sorted(self.plane.containment.face_at[numbers_of_ends(self.ends)].tolist()))
 
@@ -222,22 +297,22 @@ class Region:
         return int((self.ends[1::2] - self.ends[0::2]).sum())
 
     @cached_property
-    def edge_set(self) -> frozenset[int]:
+    def edge_set(self) -> frozenset[Edge]:
         """The boundary edges."""
         return frozenset((self.darts >> 1).tolist())
 
     @cached_property
     def boundary(self) -> Line:
         """The boundary as a line."""
-        return Line(self.plane, tuple(sorted(self.edge_set)))
+        return Line(self.plane, tuple(self.edge_set))
 
     @cached_property
-    def star(self) -> dict[int, tuple[int, int]]:
+    def star(self) -> dict[Vertex, tuple[int, int]]:
         """Boundary vertex to (sectors inside, boundary darts), both masks by rank."""
         plane = self.plane
         twins = self.darts ^ 1
-        star: dict[int, tuple[int, int]] = {}
-        low: dict[int, tuple[int, bool]] = {}  # the boundary dart of lowest rank, and whether it leaves
+        star: dict[Vertex, tuple[int, int]] = {}
+        low: dict[Vertex, tuple[int, bool]] = {}  # the boundary dart of lowest rank, and whether it leaves
         for darts, leaves in ((self.darts, True), (twins, False)):
             for v, r in zip(plane.tail[darts].tolist(), plane.rank[darts].tolist(), strict=True):
                 # below r, toggled: in the end a sector is set when an odd number of boundary darts lies above it
@@ -252,23 +327,23 @@ class Region:
         return star
 
     @cached_property
-    def rims(self) -> tuple[frozenset[int], ...]:
+    def rims(self) -> tuple[frozenset[Vertex], ...]:
         """The vertex sets of the connected parts of the boundary, by lowest vertex."""
         return _pieces(self.plane, self.darts.tolist())
 
     @cached_property
-    def rim_darts(self) -> tuple[int, ...]:
+    def rim_darts(self) -> tuple[Dart, ...]:
         """One boundary dart for each of `rims`."""
         at = {int(self.plane.tail[d]): d for d in reversed(self.darts.tolist())}
         return tuple(at[min(rim)] for rim in self.rims)
 
     def left_of(self, path: Line) -> Region:
         """Return the part of the region on the left of a path that splits it."""
-        return Region.from_faces(same_map(self, path), faces_beside(self, path)[0])
+        return Region.from_faces(_splittable(self, path), faces_beside(self, path)[0])
 
     def right_of(self, path: Line) -> Region:
         """Return the part of the region on the right of a path that splits it."""
-        return Region.from_faces(same_map(self, path), faces_beside(self, path)[1])
+        return Region.from_faces(_splittable(self, path), faces_beside(self, path)[1])
 
     @property
     def text(self) -> str:
@@ -310,9 +385,8 @@ class Region:
         return hash(self.ends.tobytes())
 
     def __repr__(self) -> str:
-        count = self.n_faces
         names = [f"@{self.plane.edge_names[e]}" for e in self.boundary.edges]
-        return f"Region({count} face{'' if count == 1 else 's'}, boundary {_shorten(names)})"
+        return f"Region({counted(self.n_faces, 'face')}, boundary {_shorten(names)})"
 
 
 Set: TypeAlias = Point | Line | Region
@@ -335,16 +409,77 @@ def same_map(first: Set, *others: Set) -> PlaneMap:
     return first.plane
 
 
+def _splittable(region: Region, path: object) -> PlaneMap:
+    if not isinstance(path, Line):
+        raise BadInput(
+            f"a region is split along a path from boundary to boundary, not by {quoted(path)}; plane.path([...]) makes one"
+        )
+    return same_map(region, path)
+
+
 def _one_map(a: PlaneMap, b: PlaneMap) -> bool:
     return a is b or a == b
 
 
-def _inside(plane: PlaneMap, ends: NDArray[np.int32], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+def _number(value: object, what: str) -> int:
+    if type(value) is int:
+        return value
+    if isinstance(value, bool | np.bool_) or not isinstance(value, Integral):
+        raise BadInput(f"{what} is a whole number, not {quoted(value)}")
+    return int(value)
+
+
+def _several(values: object, what: str) -> Iterable[object]:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise BadInput(f"{what} are given as several numbers, such as [1, 2], not as {quoted(values)}")
+    return values
+
+
+def _numbers(values: object, what: str) -> NDArray[np.int64]:
+    return np.array([_number(value, "each of them") for value in _several(values, what)], np.int64)
+
+
+def _require_walk(plane: PlaneMap, darts: tuple[int, ...], edges: tuple[int, ...]) -> None:
+    """Check that darts follow each other, each edge once, along exactly these edges."""
+    if tuple(sorted(d >> 1 for d in darts)) != edges:
+        raise BadInput(
+            f"the darts {quoted(list(darts))} do not run along each of the edges {quoted(list(edges))} once; "
+            "plane.path makes a path of vertices and edges"
+        )
+    chosen = np.array(darts, np.int64)
+    apart = np.flatnonzero(plane.tail[chosen[:-1] ^ 1] != plane.tail[chosen[1:]])
+    if apart.size:
+        d, following = darts[int(apart[0])], darts[int(apart[0]) + 1]
+        raise BadInput(
+            f"dart {following} does not begin at {plane.vertex_names[int(plane.tail[d ^ 1])]!r}, where dart {d} ends; "
+            "plane.path makes a path of vertices and edges"
+        )
+
+
+def _bounds(plane: PlaneMap, ends: NDArray[np.int64], darts: NDArray[np.int64]) -> bool:
+    """Say whether the darts are the whole boundary of the faces inside the ends, these on their left. O(k log k).
+
+    Three things make sure of it: every dart has the inside on its left only, so that none is too many; the edges among
+    them that are not in the spanning tree give the very same faces, so that none of those is missing; and an even number
+    of edges meets at every vertex, which leaves no choice for those in the tree.
+    """
+    if not darts.size or darts[0] < 0 or darts[-1] >= plane.tail.size or (np.diff(darts) == 0).any():
+        return False
+    left, right = (_inside(plane, ends, plane.face_of[d]) for d in (darts, darts ^ 1))
+    if not left.all() or right.any():
+        return False
+    if not np.array_equal(plane.containment.inside(darts >> 1), ends):
+        return False
+    _, meeting = np.unique(plane.tail[np.concatenate([darts, darts ^ 1])], return_counts=True)
+    return not bool((meeting % 2).any())
+
+
+def _inside(plane: PlaneMap, ends: NDArray[np.integer[Any]], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
     numbers = plane.containment.preorder[faces]
     return (np.searchsorted(ends, numbers, side="right") & 1).astype(np.bool_)
 
 
-def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]:
+def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[Vertex], ...]:
     """Vertex sets of the connected pieces of a few edges, by union-find."""
     parent: dict[int, int] = {}
 
@@ -359,11 +494,12 @@ def _pieces(plane: PlaneMap, darts: Sequence[int]) -> tuple[frozenset[int], ...]
         a, b = find(u), find(v)
         if a != b:
             parent[max(a, b)] = min(a, b)
-    pieces: dict[int, set[int]] = {}
+    pieces: dict[int, set[Vertex]] = {}
     for v in parent:
-        pieces.setdefault(find(v), set()).add(v)
+        pieces.setdefault(find(v), set()).add(Vertex(v))
     return tuple(frozenset(pieces[root]) for root in sorted(pieces))
 
 
 def _shorten(names: Sequence[str]) -> str:
-    return " ".join(names) if len(names) <= 6 else f"{' '.join(names[:4])} ... ({len(names)} edges)"
+    shown = [shortened(name) for name in names[:6]]
+    return " ".join(shown) if len(names) <= 6 else f"{' '.join(shown[:4])} ... ({len(names)} edges)"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def faces_beside(region: Region, path: Line) -> tuple[list[int], list[int]]:
     """
     plane = region.plane
     if path.darts is None:
-        raise BadInput(f"{path!r} has no direction, so no left and right; make it with plane.path([...])")
+        raise BadInput(f"{quoted(path)} has no direction, so no left and right; make it with plane.path([...])")
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -50,6 +51,6 @@ def faces_beside(region: Region, path: Line) -> tuple[list[int], list[int]]:
     darts = np.array(path.darts, np.int64)
     on_left, on_right = (np.unique(group[side[inside[side]]]) for side in (plane.face_of[darts], plane.face_of[darts ^ 1]))
     if not (on_left.size and on_right.size) or np.intersect1d(on_left, on_right).size:
-        raise BadInput(f"{path!r} does not split {region!r}: it must run through it from boundary to boundary")
+        raise BadInput(f"{quoted(path)} does not split {quoted(region)}: it must run through it from boundary to boundary")
     of_left, of_right = (np.flatnonzero(inside & np.isin(group, chosen)).tolist() for chosen in (on_left, on_right))
     return of_left, of_right

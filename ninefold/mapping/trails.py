@@ -10,13 +10,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .numbering import Dart
+
 if TYPE_CHECKING:
     from .sets import Line
 
 __all__ = ["trails"]
 
 
-def trails(line: Line) -> tuple[tuple[int, ...], ...]:
+def trails(line: Line) -> tuple[tuple[Dart, ...], ...]:
     """Cut a line into trails, each a tuple of darts; open ones first, by lowest end.
 
     Notes
@@ -31,15 +33,15 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
     ((0,), (3, 4))
     """
     tail = line.plane.tail
-    at: dict[int, list[int]] = {v: [] for v in sorted(line.star)}
+    at: dict[int, list[Dart]] = {v: [] for v in sorted(line.star)}
     for e in reversed(line.edges):
         for d in (2 * e + 1, 2 * e):
-            at[int(tail[d])].append(d)
+            at[int(tail[d])].append(Dart(d))
     used: set[int] = set()
 
-    def advance(v: int) -> list[int]:
+    def advance(v: int) -> list[Dart]:
         """Walk from v along unused edges until stuck."""
-        walk: list[int] = []
+        walk: list[Dart] = []
         while True:
             while at[v] and at[v][-1] >> 1 in used:
                 at[v].pop()
@@ -50,9 +52,9 @@ def trails(line: Line) -> tuple[tuple[int, ...], ...]:
             walk.append(d)
             v = int(tail[d ^ 1])
 
-    def completed(walk: list[int]) -> tuple[int, ...]:
+    def completed(walk: list[Dart]) -> tuple[Dart, ...]:
         """Splice in, at each vertex the walk passes, the closed walk that is still left there."""
-        done: list[int] = []
+        done: list[Dart] = []
         ahead = walk[::-1]
         v = int(tail[walk[0]])
         while True:

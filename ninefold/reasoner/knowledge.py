@@ -23,10 +23,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.encodings.rcc8 import RCC8
 from ninefold.errors import BadInput, DifferentMaps
 from ninefold.mapping.sets import Region
@@ -35,8 +36,9 @@ from .networks.conflicts import Conflict, conflict
 from .networks.consistency import check
 from .networks.explanation import explain
 from .networks.inference import Inference, infer
-from .networks.network import Network, Statement
+from .networks.network import Network
 from .networks.questions import Answer, ask
+from .networks.statement import Statement
 from .networks.words import phrase
 from .sets.bulk import relate_all
 from .sets.relation import RCC8_OF_NAME, names_of
@@ -54,22 +56,6 @@ MAPPED = "mapped"
 """Label of the statements that come from the map."""
 
 
-@runtime_checkable
-class Declared(Protocol):
-    """A statement whose relations are names, as an atlas keeps them."""
-
-    @property
-    def a(self) -> str: ...
-    @property
-    def b(self) -> str: ...
-    @property
-    def relations(self) -> tuple[str, ...]: ...
-    @property
-    def label(self) -> str | None: ...
-    @property
-    def weight(self) -> float | None: ...
-
-
 class HasSets(Protocol):
     """What `KnowledgeBase.from_atlas` needs of an atlas."""
 
@@ -78,7 +64,7 @@ class HasSets(Protocol):
     @property
     def sets(self) -> Mapping[str, Set]: ...
     @property
-    def statements(self) -> tuple[Declared, ...]: ...
+    def statements(self) -> tuple[Statement, ...]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +131,7 @@ class KnowledgeBase:
         self,
         plane: PlaneMap,
         names: Mapping[str, Region],
-        statements: Iterable[Statement | Declared | tuple[object, ...]] | Network = (),
+        statements: Iterable[Statement | tuple[object, ...]] | Network = (),
     ) -> None:
         self.plane = plane
         self.names = dict(names)
@@ -153,10 +139,11 @@ class KnowledgeBase:
         for name, region in self.names.items():
             if not isinstance(region, Region):
                 raise BadInput(
-                    f"{name!r} is {region!r}; only regions have RCC-8 relations, so only they can be reasoned about"
+                    f"{quoted(name)} is {quoted(region)}; only regions have RCC-8 relations, so only they "
+                    "can be reasoned about"
                 )
             if region.plane is not plane and region.plane != plane:
-                raise DifferentMaps(f"{name!r} is a region of {region.plane!r}, not of {plane!r}")
+                raise DifferentMaps(f"{quoted(name)} is a region of {quoted(region.plane)}, not of {quoted(plane)}")
             self.network.add_entity(name)
         self._state_map()
         self._n_mapped = self.network.n_statements
@@ -187,18 +174,17 @@ class KnowledgeBase:
         for s in atlas.statements:
             for name in (s.a, s.b):
                 if name in sets and name not in regions:
-                    raise BadInput(f"{name!r} is {sets[name]!r}; statements can be reasoned about between regions only")
+                    raise BadInput(
+                        f"{quoted(name)} is {quoted(sets[name])}; statements can be reasoned about between regions only"
+                    )
         return cls(atlas.plane, regions, atlas.statements)
 
-    def _say(self, s: Statement | Declared | tuple[object, ...]) -> None:
+    def _say(self, s: Statement | tuple[object, ...]) -> None:
         if isinstance(s, Statement):
-            self.network.add(s.a, s.b, s.mask, s.label, s.weight)
-            return
-        if isinstance(s, Declared):
             self.network.add(s.a, s.b, s.relations, s.label, s.weight)
             return
         if not isinstance(s, tuple | list) or not 3 <= len(s) <= 5:
-            raise BadInput(f"a statement is (a, b, relations) and perhaps a label and a weight, not {s!r}")
+            raise BadInput(f"a statement is (a, b, relations) and perhaps a label and a weight, not {quoted(s)}")
         self.network.add(*s)  # type: ignore[arg-type]
 
     def say(

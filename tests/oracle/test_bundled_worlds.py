@@ -41,26 +41,6 @@ def test_figure_8_is_what_its_text_determines(figure8):
     assert figure8.cycle(inner).n_faces == 1
 
 
-def test_figure_8_in_words(figure8):
-    building = figure8.cycle(["v0", "v1", "v8", "v7"])
-    room = figure8.cycle(["v2", "v3", "v6", "v5", "v4"])
-    north = figure8.cycle(["v0", "v1", "v3", "v2"])
-    name = lambda x, y: relate(x, y).name  # noqa: E731
-    assert name(room, building) == "inside"
-    assert name(building, room) == "contains"
-    assert name(north, building) == "coveredBy"
-    assert name(north, room) == "meet"
-    assert name(building - room, room) == "meet"
-    assert [name(figure8.vertex(v), room) for v in ("v0", "v2", "v5")] == ["disjoint", "meet", "meet"]
-    assert [name(figure8.vertex(v), building) for v in ("v0", "v2")] == ["meet", "inside"]
-    assert name(figure8.edge("v1", "v3"), building) == "coveredBy"
-    assert name(figure8.edge("v1", "v3"), room) == "meet"
-    assert name(figure8.edge("v2", "v3"), building) == "inside"
-    assert name(figure8.edge("v0", "v1"), room) == "disjoint"
-    assert name(figure8.path(["v0", "v2", "v3", "v1"]), building) == "coveredBy"
-    assert name(figure8.path(["v6", "v8", "v1", "v3", "v6"]), room) == "meet"
-
-
 @pytest.mark.parametrize("name", SMALL)
 def test_every_relation_of_cells_faces_and_short_unions(name):
     source = samples.load(name)

@@ -6,18 +6,19 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ninefold.encodings import ALLEN, H8, RCC8
+from ninefold.encodings import ALLEN, H8
 from ninefold.reasoner.engine import columns as c
 from ninefold.reasoner.engine.analyse import analyse, minimise
+from ninefold.reasoner.engine.clauses import attach
 from ninefold.reasoner.engine.decide import decay, luby, next_split
 from ninefold.reasoner.engine.explain import explain, explain_triangle_conflict, made_true_at, relation_before, weaken_pair
 from ninefold.reasoner.engine.graph import arc_between, dense_frame, eliminate, triangulated_frame
-from ninefold.reasoner.engine.narrow import backjump
+from ninefold.reasoner.engine.narrow import backjump, narrow
 from ninefold.reasoner.engine.queue import clear_queue, enqueue, open_queue, take_smallest
 from ninefold.reasoner.engine.search import learn, propagate, recheck, settle_root, split
-from ninefold.reasoner.engine.state import node_table
+from ninefold.reasoner.engine.state import new_state, node_table, state_labels, watch_again
 from ninefold.reasoner.engine.sweep import losing_partners
-from ninefold.reasoner.engine.tables import Tables, atomic_subclass, compose_masks
+from ninefold.reasoner.engine.tables import atomic_subclass, compose_masks
 from ninefold.reasoner.engine.words import bit_count, lowest_bit
 from tests.oracle.engine_reference import (
     CALCULI,
@@ -71,14 +72,6 @@ def test_tables(name):
                 (1 << 64) - 1 if through >> k & 1 else 0 for k in range(b)
             ]
     assert (tables.compose_bases() == calculus.base_composition).all()
-
-
-def test_atomic_tables_settle_only_base_relations():
-    tables = Tables.of(RCC8, H8.member, atomic=True)
-    for r in range(1, 256):
-        assert (tables.hull[r] & ~255 == 0) == (r.bit_count() == 1)
-        assert int(tables.split[r]).bit_count() == 1
-        assert tables.split[r] & ~r == 0
 
 
 def test_queue_takes_the_smallest_first_and_the_oldest_among_equals():
@@ -197,6 +190,55 @@ def test_closure(name, chordal):
     assert True in answers
 
 
+@pytest.mark.parametrize("chordal", [False, True])
+@pytest.mark.parametrize("name", CALCULI)
+def test_labels_are_stated_as_by_narrowing_one_after_another(name, chordal):
+    calculus, tables = CALCULI[name][0], TABLES[name]
+    i, j, mask = stated(calculus, random_constraints(name, 3, 90, 5))
+    mask[::7] = calculus.universal  # says nothing
+    frame = triangulated_frame(90, i, j, most=90 * 90) if chordal else dense_frame(90)
+    assert (frame.core > 0) == chordal
+    arcs = frame.arcs(i, j)
+    assert (arcs & 1).any() or not chordal
+    at_once, in_turn = (new_state(tables, frame, arcs, mask, rng=np.random.default_rng(0)) for _ in range(2))
+    for s in (at_once, in_turn):
+        s.active[:] = -1  # rows not in use are not initialised
+    state_labels(at_once, arcs, mask.astype(np.int16))
+    s = in_turn
+    for arc, relation in zip(arcs.tolist(), mask.tolist(), strict=True):
+        if relation != tables.full:
+            edge, back = arc >> 1, arc & 1
+            ends = s.edges[edge, c.TAIL + back], s.edges[edge, c.HEAD - back]
+            narrow.plain(s, arc, *ends, relation, c.DECIDED, 0, True)
+    for field in ("dom", "edges", "nodes", "planes", "active", "reg"):
+        assert (getattr(at_once, field) == getattr(in_turn, field)).all(), field
+
+
+@pytest.mark.parametrize("n_clauses", [0, 1, 40])
+def test_clauses_are_watched_as_one_after_another(n_clauses):
+    rng = np.random.default_rng(5)
+    states = [engine("rcc8", 8, random_constraints("rcc8", 1, 8, 4)).state for _ in range(2)]
+    clauses = [(rng.choice(28, int(rng.integers(2, 6)), replace=False), rng.integers(1, 255, 6)) for _ in range(n_clauses)]
+    for s in states:
+        s.watch[:] = -7
+        s.edges[:, c.WATCH] = 3  # of clauses that are gone
+        top = 0
+        for clause, (edges, masks) in enumerate(clauses):
+            s.place[clause] = top
+            s.arena[top : top + 2] = len(edges), 2
+            literals = np.stack([edges, masks[: len(edges)]], axis=1).ravel()
+            s.arena[top + 2 : top + 2 + literals.size] = literals
+            top += 2 + literals.size
+        s.reg[c.N_CLAUSES] = n_clauses
+    at_once, in_turn = states
+    watch_again(at_once)
+    in_turn.edges[:, c.WATCH] = -1
+    for clause in range(n_clauses):
+        attach.plain(in_turn, clause)
+    assert (at_once.watch == in_turn.watch).all()
+    assert (at_once.edges == in_turn.edges).all()
+
+
 def at_conflict(name, seed, chordal, n):
     """An engine at its first conflict after random splits, or None if it does not come to one."""
     degree = (4, 5, 6)[seed % 3] if chordal else (7, 9, 11)[seed % 3]
@@ -254,9 +296,7 @@ def test_narrowing_keeps_books_and_is_taken_back(name, chordal):
                     wanted = -1 if s.marks[edge, c.ROOT] & ~mask == 0 else first
                     assert made_true_at(s.edges, s.trail, edge, mask) == wanted
         for level in range(int(s.reg[c.LEVEL]) - 1, -1, -1):
-            backjump(
-                s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, s.reg, s.converse, s.reg[c.N_BASES], level
-            )  # fmt: skip
+            backjump(s, level)
             check_state(run)
         assert (s.dom[::2] == s.marks[:, c.ROOT]).all()
 
@@ -296,7 +336,7 @@ def test_explanations_hold_before_and_imply(name, chordal):
                 continue
             edge, old, new = (int(s.trail[t, k]) for k in (c.EDGE, c.OLD, c.NEW))
             wanted = (new | int(rng.integers(full + 1))) & (full ^ (1 << int(rng.choice(bits(old & ~new)))))
-            n = explain(s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, full, t, wanted, s.out)
+            n = explain(s, t, wanted)
             premise = {}
             for e, mask in s.out[:n].tolist():
                 assert relation_before(s.edges, s.marks, s.trail, s.converse, 2 * e, t) & ~mask == 0
@@ -308,7 +348,7 @@ def test_explanations_hold_before_and_imply(name, chordal):
             looked += 1
         if s.reg[c.TROUBLE] == c.TRIANGLE_TROUBLE:
             e, f, g = (int(s.reg[k]) for k in (c.TROUBLE_A, c.TROUBLE_F, c.TROUBLE_G))
-            n = explain_triangle_conflict(s.dom, s.edges, s.marks, s.converse, s.compose, full, e, f, g, s.out)
+            n = explain_triangle_conflict(s, e, f, g)
             premise = {}
             for x, mask in s.out[:n].tolist():
                 assert s.dom[2 * x] & ~mask == 0
@@ -330,19 +370,13 @@ def meet(s, premise, arc):
 @pytest.mark.parametrize("chordal", [False, True])
 def test_analysis_learns_a_clause_that_asserts(chordal):
     for run in conflicts("rcc8", chordal, 14, 8):
-        s, reg = run.state, run.state.reg
-        n = analyse(
-            s.dom, s.edges, s.marks, s.trail, s.levels, reg, s.arena, s.place, s.converse, s.compose, reg[c.FULL],
-            s.activity, s.recent, s.held, s.out, s.learnt,
-        )  # fmt: skip
+        s = run.state
+        n = analyse(s)
         depth = [int(s.trail[s.marks[e, c.AT], c.DEPTH]) for e in s.learnt[:n, 0]]
         assert max(depth) == depth[0]
         assert depth.count(depth[0]) == 1
         before = set(s.learnt[:n, 0].tolist())
-        m, level, lbd = minimise(
-            s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, reg[c.FULL], s.stamp, 2, n,
-            s.out, s.stack, s.learnt,
-        )  # fmt: skip
+        m, level, lbd = minimise(s, 2, n)
         kept = s.learnt[:m].tolist()
         assert {e for e, _ in kept} <= before
         assert (s.marks[:, c.NEED] == -1).all()
@@ -352,9 +386,7 @@ def test_analysis_learns_a_clause_that_asserts(chordal):
         assert level == (
             0 if m == 1 else max(d for e, d in zip(s.learnt[:m, 0], depths(s, kept), strict=True) if e != kept[0][0])
         )
-        backjump(
-            s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[c.N_BASES], level
-        )  # fmt: skip
+        backjump(s, level)
         first, rest = kept[0], kept[1:]
         assert all(s.dom[2 * e] & mask == 0 for e, mask in rest)  # false still
         assert s.dom[2 * first[0]] & first[1]  # and the first one is not, and says something

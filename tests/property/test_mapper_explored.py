@@ -4,60 +4,17 @@ import copy
 import math
 
 import numpy as np
+from explored import component_map, same_up_to_numbering, simulated
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from worlds import KINDS, world
+from worlds import KINDS
 
 from ninefold.errors import NinefoldError, NotPlane
-from ninefold.mapping import Heading, Mapper, PlaneMap, Samples, SimulatedWorld, Visit, Walk, build, explore
+from ninefold.mapping import Heading, Mapper, PlaneMap, Samples, Visit, Walk, build, explore
 
 seeds = st.integers(0, 2**32 - 1)
 kinds = st.sampled_from(KINDS)
 sizes = st.integers(1, 30)
-
-
-def simulated(seed, kind, size):
-    w = world(seed, kind, size)
-    names = [f"w{e}" for e in range(len(w.edges))]
-    return SimulatedWorld(w.points, w.edges, w.paths or None, edge_names=names)
-
-
-def component_map(w, start):
-    """The true map of the component that holds a vertex, from its geometry alone."""
-    part = next(part for part in w.components() if start in part)
-    row = {v: i for i, v in enumerate(part)}
-    mine = [e for e, (a, _) in enumerate(w.edges.tolist()) if a in row]
-    return PlaneMap.from_geometry(
-        w.points[part],
-        np.array([[row[int(v)] for v in w.edges[e]] for e in mine], int).reshape(-1, 2),
-        [w.path(e) for e in mine] or None,
-        vertex_names=[w.vertex_names[v] for v in part],
-        edge_names=[w.edge_names[e] for e in mine],
-    )
-
-
-def same_up_to_numbering(found, true, tolerance):
-    """Match the darts by edge name, end and heading, and compare everything else."""
-    assert set(found.vertex_names) == set(true.vertex_names)
-    assert set(found.edge_names) == set(true.edge_names)
-    to = np.full(true.tail.size, -1)
-    for e, name in enumerate(true.edge_names):
-        forward = 2 * found.edge_names.row(name)
-        fits = [
-            d
-            for d in (forward, forward + 1)
-            if found.vertex_names[int(found.tail[d])] == true.vertex_names[int(true.tail[2 * e])]
-            and abs(found.heading_of(d).turn_to(true.heading_of(2 * e))) < tolerance
-            and abs(found.heading_of(d ^ 1).turn_to(true.heading_of(2 * e + 1))) < tolerance
-        ]
-        assert len(fits) == 1
-        to[2 * e], to[2 * e + 1] = fits[0], fits[0] ^ 1
-        turn = found.turn[fits[0] >> 1] * (-1 if fits[0] & 1 else 1)
-        assert abs(turn - true.turn[e]) < 2 * tolerance
-    assert np.array_equal(found.next_ccw[to], to[true.next_ccw])
-    faces = set(zip(found.face_of[to].tolist(), true.face_of.tolist(), strict=True))
-    assert len(faces) == found.n_faces == true.n_faces or not len(to)
-    assert (found.outer_face, true.outer_face) in faces or not len(to)
 
 
 @settings(max_examples=300, deadline=None)
@@ -96,7 +53,8 @@ def test_after_every_event_the_map_so_far_is_valid(seed, kind, size, noisy):
     for event in walk.events:
         mapper.step(event)
         online_equals_derived(mapper)
-    assert mapper.open_exits == mapper.warnings == ()
+    assert mapper.open_exits == ()
+    assert [warning for warning in mapper.warnings if "may be one edge" not in warning] == []  # some parallel edges are thin
     assert np.abs(mapper.residuals).max(initial=0.0) <= (walk.header.tolerance if noisy else 1e-9)
 
 
@@ -106,7 +64,10 @@ def everything(mapper):
     held = {name: getattr(memory, name) for name in memory.__slots__ if name not in ("stars", "grown")}
     held["stars"] = [(star.yaws, star.darts, star.declared) for star in memory.stars]
     held["grown"] = {name: getattr(memory.grown, name) for name in memory.grown.__slots__}
-    held["self"] = {name: value for name, value in vars(mapper).items() if name not in ("_memory", "_plane", "header")}
+    held["self"] = {
+        name: value for name, value in vars(mapper).items() if name not in ("_memory", "_plane", "_leg", "header")
+    }
+    held["leg"] = [getattr(mapper._leg, name) for name in mapper._leg.__slots__]
     return copy.deepcopy(held)
 
 
@@ -146,7 +107,7 @@ def damaged(draw, events, places):
 def cannot_be_drawn(mapper, place):
     """Whether the leg on which a mapper is makes no plane map, judged from all its darts at once."""
     memory, grown = mapper._memory, mapper._memory.grown
-    leg = mapper._leg(place)
+    leg = mapper._leg.read()
     tail = np.array([*grown.tail, mapper._at, memory.rows[place]])
     heading = np.array([*grown.heading, leg.out, leg.back])
     after = np.empty(len(tail), int)

@@ -5,7 +5,8 @@ from typing import assert_type
 import numpy as np
 from numpy.typing import NDArray
 
-from ninefold.mapping import Heading, Line, PlaneMap, Point, Region
+from ninefold.layout import Drawing, draw
+from ninefold.mapping import Dart, Edge, Face, Heading, Line, PlaneMap, Point, Region, Vertex
 from ninefold.reasoner import Relation, relate, relate_all, relate_pairs
 
 
@@ -23,3 +24,14 @@ def check(plane: PlaneMap) -> None:
     assert_type(relate_pairs([plane.vertex("a")], [(0, 0)]), NDArray[np.uint16])
     assert_type(relate_all([plane.vertex("a")]), NDArray[np.uint16])
     assert_type(Heading.from_bearing(90).yaw, float)
+    assert_type(plane.vertex("a").index, Vertex)
+    assert_type(plane.darts_at(plane.vertex("a").index), list[Dart])
+    assert_type(plane.face_darts(plane.outer_face), list[Dart])
+    assert_type(plane.heading_of(plane.darts_at(Vertex(0))[0]), Heading)
+    assert_type(plane.edge("0").edges, tuple[Edge, ...])
+    assert_type(plane.edge("0").boundary, frozenset[Vertex])
+    assert_type(plane.region([1, 2]).faces, tuple[Face, ...])
+    plane.darts_at(plane.outer_face)  # type: ignore[arg-type]
+    plane.face_darts(3)  # type: ignore[arg-type]
+    plane.heading_of(plane.vertex("a").index)  # type: ignore[arg-type]
+    assert_type(draw(plane, highlight=[plane.face(1)]), Drawing)

@@ -94,6 +94,36 @@ class TestConflict:
         assert broken == before
 
 
+class TestReprs:
+    def test_of_a_conflict(self, broken):
+        found = conflict(broken)
+        assert repr(found).startswith(f"Conflict({len(found)} statements, minimal: kitchen inside house")
+        assert "mask" not in repr(found)
+
+    def test_no_more_than_fits(self):
+        net = Network("rcc8")
+        for k in range(6):
+            net.add(k, (k + 1) % 6, "inside")
+        assert repr(conflict(net)) == "Conflict(6 statements, minimal: 0 inside 1; 1 inside 2; 2 inside 3; 3 more)"
+        assert len(repr(explain(net))) < 200
+        assert repr(explain(net)).startswith("Explanation(1 case, 4 lines: ")
+
+    def test_of_an_explanation_that_is_not_printed(self, broken):
+        found = explain(conflict(broken), most=0)
+        assert repr(found).startswith("Explanation(too long to print, 5 lines: These 3 statements contradict each other")
+
+    def test_of_repairs(self, house, broken):
+        assert repr(repair(house)) == "Repair(nothing to drop: the network is consistent)"
+        found = repair(broken)
+        text = repr(found)
+        assert text.startswith(f"Repair(drop 1 of {broken.n_statements} statements, cost {found.cost:g}: ")
+        assert str(found.drop[0].a) in text
+        one = Network("rcc8")
+        one.add("a", "b", "meet", weight=math.inf)
+        one.add("a", "b", "disjoint", weight=math.inf)
+        assert repr(repair(one)).startswith("Repair(none: hard statements contradict each other: a meets b")
+
+
 class TestExplain:
     def test_the_sentence(self, broken):
         text = "kitchen inside house (plan), house disjoint garden (deed), so kitchen disjoint garden; "
@@ -285,12 +315,12 @@ class TestScenario:
 
 
 class TestClosure:
-    def test_proofs_of_what_was_always_known(self):
+    def test_derivations_of_what_was_always_known(self):
         closure = RecordedClosure(RCC8, 3)
         assert closure.close()
-        assert closure.proof(0, 1, RCC8.universal).sources == frozenset()
+        assert closure.derivation(0, 1, RCC8.universal).sources == frozenset()
         with pytest.raises(BadInput, match="does not show"):
-            closure.proof(0, 1, RCC8.relation("DC"))
+            closure.derivation(0, 1, RCC8.relation("DC"))
         with pytest.raises(BadInput, match="nothing to refute"):
             closure.refutation()
 
@@ -310,4 +340,4 @@ class TestClosure:
             for j in range(i + 1, n):
                 assert closure.relation(i, j) & ~parts == 0
                 assert closure.relation(j, i) == RCC8.converse_of(closure.relation(i, j))
-        assert closure.proof(0, n - 1, parts).sources == set(range(n - 1))
+        assert closure.derivation(0, n - 1, parts).sources == set(range(n - 1))

@@ -7,6 +7,7 @@ import os
 import sqlite3
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,6 +84,13 @@ def test_events_appended_one_by_one_make_the_same_atlas(tmp_path):
         assert atlas.plane == build(Walk(WalkHeader(), TRIANGLE))
         assert atlas.walk.events == TRIANGLE
         assert [record.source for record in atlas.provenance] == ["robot 7"]
+
+
+def test_what_is_no_event_is_refused_and_not_stored(tmp_path):
+    with Atlas.create(tmp_path / "a.atlas") as atlas:
+        with pytest.raises(WalkError, match="an event is a Visit or Samples, not 'hall'"):
+            atlas.append("hall")
+        assert atlas.n_events == 0
 
 
 def test_a_log_ahead_of_the_stored_map_is_replayed(triangle):
@@ -192,6 +200,15 @@ def test_regions_with_holes_and_several_parts_are_stored(tmp_path):
         for name, region in chosen.items():
             atlas.name(name, region)
         assert atlas.sets == dict(sorted(chosen.items()))
+
+
+def test_a_map_of_one_place_is_the_same_when_opened_again(tmp_path):
+    """It has no edge, and headings none the less: an empty array of them, not None."""
+    with Atlas.create(tmp_path / "one.atlas") as atlas:
+        atlas.append(Visit("gate"))
+        before = atlas.plane
+    with Atlas.open(tmp_path / "one.atlas") as atlas:
+        assert atlas.plane == before
 
 
 def test_names_can_be_changed_and_forgotten(triangle):
@@ -387,6 +404,7 @@ def test_damaged_rows_are_reported(triangle, damage):
         atlas.name("room", "cycle:a,b,c")
         atlas.declare(Statement("room", ("DC",), "pond"))
     connection = sqlite3.connect(triangle)
+    connection.execute("PRAGMA ignore_check_constraints = ON")
     connection.execute(damage)
     connection.commit()
     connection.close()
@@ -394,6 +412,109 @@ def test_damaged_rows_are_reported(triangle, damage):
         _ = (atlas.plane, atlas.sets, atlas.warnings, atlas.statements, atlas.walk, atlas._log.follow())
     assert str(caught.value).startswith(f"{triangle}: ")
     assert "\n" not in str(caught.value)
+
+
+TABLES_WITHOUT_CONSTRAINTS = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE event (seq INTEGER PRIMARY KEY, json TEXT NOT NULL);
+CREATE TABLE vertex (id INTEGER PRIMARY KEY, name TEXT);
+CREATE TABLE edge (
+  id INTEGER PRIMARY KEY, name TEXT, tail INTEGER NOT NULL, head INTEGER NOT NULL,
+  next_out INTEGER NOT NULL, next_back INTEGER NOT NULL,
+  heading_out REAL, heading_back REAL, turn REAL, tether INTEGER NOT NULL
+);
+CREATE VIEW dart AS
+  SELECT 2 * id AS dart, tail, head, next_out AS next_ccw, heading_out AS heading FROM edge
+  UNION ALL SELECT 2 * id + 1, head, tail, next_back, heading_back FROM edge;
+CREATE TABLE named_set (name TEXT PRIMARY KEY, kind TEXT NOT NULL, definition TEXT NOT NULL, text TEXT NOT NULL);
+CREATE TABLE statement (
+  id INTEGER PRIMARY KEY, a TEXT NOT NULL, relations TEXT NOT NULL, b TEXT NOT NULL, label TEXT, weight REAL
+);
+CREATE TABLE provenance (
+  id INTEGER PRIMARY KEY, source TEXT NOT NULL, kind TEXT NOT NULL, sha256 TEXT, tool TEXT NOT NULL, made TEXT NOT NULL
+);
+"""
+
+
+@pytest.fixture
+def old_atlas(tmp_path, monkeypatch):
+    """An atlas as it was written before its tables had constraints."""
+    path = tmp_path / "old.atlas"
+    with monkeypatch.context() as patch:
+        patch.setattr(_schema, "TABLES", TABLES_WITHOUT_CONSTRAINTS)
+        with Atlas.from_map(samples.load("figure8").to_map(), path) as atlas:
+            atlas.name("room", "cycle:v2,v3,v6,v5,v4")
+            atlas.declare(Statement("room", ("DC",), "pond", weight=2))
+    return path
+
+
+def test_an_atlas_without_constraints_still_opens(old_atlas):
+    with Atlas.open(old_atlas) as atlas:
+        assert (atlas.names, atlas.sets["room"].text) == (("room",), atlas.plane.cycle(["v2", "v3", "v6", "v5", "v4"]).text)
+        assert atlas.statements == (Statement("room", ("DC",), "pond", weight=2),)
+        atlas.name("corner", "vertex:v0")
+    with Atlas.open(old_atlas, writable=False) as atlas:
+        assert atlas.names == ("corner", "room")
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        ("UPDATE named_set SET name = NULL", "a named set, row 1 of named_set, has the name NULL"),
+        ("INSERT INTO named_set VALUES (NULL, 'point', '{}', '')", "a named set, row 2 of named_set, has the name NULL"),
+        ("UPDATE named_set SET name = x'00ff'", r"has the name b'\\x00\\xff'"),
+        ("UPDATE named_set SET name = ''", "has the name ''"),
+        ("UPDATE named_set SET kind = x'01'", "has the kind"),
+        ("UPDATE statement SET a = ''", "a statement, row 1 of statement, has the a ''"),
+        ("UPDATE statement SET relations = '  '", "has the relations '  '"),
+        ("UPDATE statement SET weight = -1", "has the weight -1.0"),
+        ("UPDATE statement SET weight = 'heavy'", "has the weight 'heavy'"),
+        ("UPDATE statement SET label = x'00'", "has the label"),
+        ("INSERT INTO provenance VALUES (1, x'00', '', NULL, '', '')", "a source, row 1 of provenance, has the source"),
+    ],
+)
+@pytest.mark.parametrize("writable", [True, False])
+def test_what_constraints_would_have_refused_is_found_on_opening(old_atlas, damage, said, writable):
+    connection = sqlite3.connect(old_atlas)
+    connection.execute(damage)
+    connection.commit()
+    connection.close()
+    with pytest.raises(AtlasError, match=said) as caught, Atlas.open(old_atlas, writable=writable) as atlas:
+        _ = atlas.sets
+    assert str(caught.value).startswith(f"{old_atlas}: damaged (")
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "INSERT INTO named_set VALUES (NULL, 'point', '{}', '')",
+        "INSERT INTO named_set VALUES ('', 'point', '{}', '')",
+        "INSERT INTO named_set VALUES ('a', 'sphere', '{}', '')",
+        "INSERT INTO named_set VALUES ('a', 'point', NULL, '')",
+        "INSERT INTO statement VALUES (1, 'a', ' ', 'b', NULL, NULL)",
+        "INSERT INTO statement VALUES (1, 'a', 'DC', 'b', NULL, -1)",
+        "INSERT INTO statement VALUES (1, 'a', 'DC', 'b', NULL, 'heavy')",
+        "INSERT INTO event VALUES (0, '{}')",
+        "INSERT INTO event VALUES (99, NULL)",
+        "INSERT INTO meta VALUES ('origin', NULL)",
+        "UPDATE edge SET tether = 2",
+        "UPDATE edge SET tail = -1",
+        "UPDATE edge SET name = x'00'",
+    ],
+)
+def test_the_tables_refuse_what_no_reader_takes(triangle, statement):
+    connection = sqlite3.connect(triangle)
+    with pytest.raises(sqlite3.IntegrityError):
+        connection.execute(statement)
+    connection.close()
+    with Atlas.open(triangle) as atlas:
+        assert atlas.plane.n_vertices == 3
+
+
+@pytest.mark.parametrize("path", ["town.atlas", Path("town.atlas")])
+def test_the_class_itself_opens_no_file(path):
+    with pytest.raises(BadInput, match=r"Atlas\.open\('town\.atlas'\) opens an atlas"):
+        Atlas(path)
 
 
 def test_a_closed_atlas_says_so(triangle):

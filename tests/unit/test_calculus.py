@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from ninefold.encodings import ALLEN, CALCULI, POINT, RCC5, RCC8, Calculus, calculus_named
+from ninefold.encodings.gis_words import WORDS, meant_by
 from ninefold.errors import BadInput, NinefoldError, TooLarge, UnknownName
+from ninefold.reasoner import Network
 
 BASES = ("DC", "EC", "PO", "TPP", "NTPP", "TPPi", "NTPPi", "EQ")
 
@@ -312,3 +314,38 @@ def test_sixty_four_base_relations():
     assert calculus.universal == 2**64 - 1
     assert calculus.names(calculus.compose(calculus.relation("+60 +1"), calculus.relation("+5"))) == ("+1", "+6")
     assert calculus.names(calculus.converse_of(calculus.relation("+1 +63 +0"))) == ("+0", "+1", "+63")
+
+
+class TestWordsOfGeographicSoftware:
+    @pytest.mark.parametrize(
+        ("word", "meant"),
+        [
+            ("touches", "meet"),
+            ("ST_Touches", "meet"),
+            ("geo:sfWithin", "coveredBy inside equal"),
+            ("within", "coveredBy inside equal"),
+            ("crosses", "overlap"),
+            ("intersects", "meet overlap coveredBy inside covers contains equal"),
+            ("Contains_Properly", "contains"),
+        ],
+    )
+    def test_they_are_answered_with_what_they_mean(self, word, meant):
+        with pytest.raises(UnknownName, match=re.escape(f"'{word}'; did you mean '{meant}'?")) as caught:
+            Network("rcc8").add("a", "b", f"disjoint {word}")
+        assert caught.value.near == (meant,)
+        RCC8.relation(meant)  # can be pasted
+
+    def test_every_answer_can_be_read(self):
+        for calculus in (RCC8, RCC5):
+            for word, meant in WORDS[calculus.name].items():
+                assert calculus.relation(meant)
+                assert meant_by(word.upper(), calculus) == meant
+
+    def test_intersects_is_all_but_disjoint(self):
+        assert RCC8.relation(meant_by("intersects", RCC8)) == RCC8.universal & ~RCC8.relation("disjoint")
+        assert RCC5.relation(meant_by("intersects", RCC5)) == RCC5.universal & ~RCC5.relation("DR")
+
+    def test_other_calculi_know_nothing_of_them(self):
+        assert meant_by("touches", POINT) is None
+        with pytest.raises(UnknownName, match=r"no relation named 'touches'$"):
+            POINT.relation("touches")

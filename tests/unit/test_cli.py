@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,8 +17,9 @@ from ninefold import cli
 from ninefold.cli import _demonstration as demo
 from ninefold.cli import _output
 from ninefold.errors import WalkError
-from ninefold.io import Atlas, read_walk, samples, write_walk
-from ninefold.mapping import Visit, Walk, WalkHeader, build
+from ninefold.io import Atlas, read_walk, samples, write_network, write_walk
+from ninefold.mapping import Visit, Walk, WalkHeader, build, explore
+from ninefold.reasoner import Network
 
 MODULE = [sys.executable, "-c", "from ninefold.cli import main; main()"]
 
@@ -257,10 +259,12 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--start", "in9"), "did you mean")
     bad = tmp_path / "bad.jsonl"
     bad.write_text('{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}\n{"place": "a"}\n{"heading": NaN}\n')
-    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl:3")
+    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl, line 3: ")
     assert_refused(run("map", bad, "-o", tmp_path / "x.atlas", "--drop-crossing"), "--drop-crossing")
     bad.write_text(bad.read_text().replace("NaN", "0") + '{"place": "b", "exits": [0]}\n')
-    assert_refused(run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl: event 3", "along none of its 1 exit")
+    assert_refused(
+        run("map", bad, "-o", tmp_path / "x.atlas"), "bad.jsonl, line 4: ", "along none of its 1 exit; exits seen: 0 rad"
+    )
     (tmp_path / "notes.txt").write_text("hello")
     assert_refused(run("map", tmp_path / "notes.txt", "-o", tmp_path / "x.atlas"), "neither an atlas")
     assert_refused(run("info", tmp_path / "notes.txt"), "not an atlas")
@@ -298,7 +302,84 @@ def test_a_mistaken_unit_of_headings_is_doubted(tmp_path, run, run_json, unit, h
     lines[-1] = {"place": "0"}  # closes a loop that cannot be
     lines[4] = lines[2]
     walk.write_text("\n".join(map(json.dumps, lines)))
-    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl: event", words or "")
+    assert_refused(run("map", walk, "-o", tmp_path / "loop.atlas"), "walk.jsonl, line ", words or "")
+
+
+@pytest.fixture
+def kinds(tmp_path, figure8):
+    """A file of each kind."""
+    write_walk(explore(samples.load("ring").to_world()).walk, tmp_path / "walk.jsonl")
+    network = Network("rcc8")
+    network.add("a", "b", "EC")
+    write_network(network, tmp_path / "net.csv")
+    shutil.copy(samples.path("ring"), tmp_path / "streets.geojson")
+    nouns = {"walk.jsonl": "a walk log", "net.csv": "a relation network", "streets.geojson": "lines in GeoJSON"}
+    return {tmp_path / name: noun for name, noun in nouns.items()} | {figure8: "an atlas"}
+
+
+@pytest.mark.parametrize(
+    ("command", "takes"),
+    [
+        (["info", "FILE"], "an atlas"),
+        (["name", "FILE", "n", "vertex:v0"], "an atlas"),
+        (["relate", "FILE", "vertex:v0", "vertex:v1"], "an atlas"),
+        (["draw", "FILE", "-o", "x.svg"], "an atlas"),
+        (["verify", "FILE"], "an atlas"),
+        (["explore", "FILE", "-o", "x.jsonl"], "lines in GeoJSON"),
+        (["check", "FILE"], "a relation network"),
+        (["prove", "FILE", "proof"], "a relation network"),
+        (["infer", "FILE", "a", "b"], "a relation network"),
+        (["ask", "FILE", "EC(a, b)"], "a relation network"),
+        (["repair", "FILE"], "a relation network"),
+        (["scenarios", "FILE"], "a relation network"),
+    ],
+)
+def test_every_command_says_what_a_wrong_file_is(tmp_path, monkeypatch, run, kinds, command, takes):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(file.name for file in tmp_path.iterdir())
+    for path, noun in kinds.items():
+        if noun != takes:
+            assert_refused(
+                run(*[path if word == "FILE" else word for word in command]), f"{path}: this is {noun}, not ", "`ninefold "
+            )
+    assert sorted(file.name for file in tmp_path.iterdir()) == before
+
+
+def test_map_says_what_a_network_and_an_atlas_are(tmp_path, run, kinds, figure8):
+    assert_refused(
+        run("map", tmp_path / "net.csv", "-o", tmp_path / "x.atlas"), "this is a relation network", "ninefold check"
+    )
+    assert_refused(run("map", figure8, "-o", tmp_path / "x.atlas"), "an atlas already", "ninefold info")
+
+
+def test_plurals(tmp_path, run):
+    atlas = tmp_path / "one.atlas"
+    (tmp_path / "one.jsonl").write_text(
+        '{"ninefold": "walk", "version": 1, "heading": "yaw-deg"}\n{"place": "a"}\n{"heading": 0}\n{"place": "b"}\n'
+    )
+    assert run("map", tmp_path / "one.jsonl", "-o", atlas)[1] == f"{atlas}: 2 vertices, 1 edge, 1 face\n"
+    assert "along 1 edge: e0" in run("info", atlas)[1]
+    assert run("name", atlas, "spot", "vertex:a")[1] == f"spot: Point(a), stored in {atlas}\n"
+    assert run("name", atlas, "way", "edge:@e0")[0] == 0
+    assert run("relate", atlas, "--all", "-o", tmp_path / "t.csv")[1] == f"{tmp_path / 't.csv'}: 1 pair of 2 sets\n"
+    assert "named sets   1 line, 1 point: " in run("info", atlas)[1]
+    net = tmp_path / "net.csv"
+    net.write_text("a,relations,b\nx,EQ,x\n")
+    assert "consistent (1 entity, 1 statement, " in run("check", net)[1]
+    net.write_text("a,relations,b\nx,DC,y\nx,EQ,y\n")
+    assert "(2 entities, 2 statements, " in run("check", net)[1]
+
+
+def test_what_is_written_is_said(tmp_path, run):
+    net, picture = tmp_path / "net.csv", tmp_path / "net.svg"
+    net.write_text("a,relations,b\nx,EC,y\n")
+    code, out, _ = run("check", net, "--draw", picture)
+    assert (code, out.splitlines()[-1]) == (0, f"{picture}: a drawing of 2 regions, checked pair by pair")
+    atlas = tmp_path / "ring.atlas"
+    assert run("map", "sample:ring", "-o", atlas)[1].startswith(f"{atlas}: ")
+    code, out, err = run("verify", atlas, "--pairs", 20, "-o", tmp_path / "wrong.svg")
+    assert (code, err) == (0, f"ninefold: {tmp_path / 'wrong.svg'}: not written, since there is no disagreement to draw\n")
+    assert not (tmp_path / "wrong.svg").exists()
 
 
 def test_force_never_replaces_the_source(tmp_path, run):

@@ -8,10 +8,12 @@ import pytest
 import shapely
 
 from ninefold.errors import BadInput, DifferentMaps, MissingExtra, TooLarge
+from ninefold.io import samples
 from ninefold.layout import Drawing, draw, drawing_problems, schnyder, tutte
 from ninefold.layout.labels import place_labels, text_width
+from ninefold.layout.layouts import DEFAULT_LAYOUT
 from ninefold.layout.methods.triangulate import check_size
-from ninefold.mapping import PlaneMap
+from ninefold.mapping import Mapper, PlaneMap
 
 ONE = PlaneMap.from_darts([], [], n_vertices=1)
 EDGE = PlaneMap.from_rotation({"a": ["b"], "b": ["a"]})
@@ -100,7 +102,7 @@ def test_an_equal_map_made_twice_is_the_same_map():
 def test_unknown_layouts_sizes_and_arrays_are_refused(tmp_path):
     with pytest.raises(BadInput, match="did you mean 'tutte'"):
         draw(SQUARE, layout="tute")
-    with pytest.raises(BadInput, match="the layouts are schnyder, tutte"):
+    with pytest.raises(BadInput, match="the layouts are auto, schnyder, tutte"):
         draw(SQUARE, layout="spring")
     with pytest.raises(TooLarge, match="357913943"):
         check_size(400_000_000)
@@ -112,7 +114,7 @@ def test_unknown_layouts_sizes_and_arrays_are_refused(tmp_path):
         Drawing.from_points(SQUARE, [0, 1, 2, 3])
     with pytest.raises(BadInput, match="bend_start"):
         Drawing.from_points(SQUARE, np.eye(4)[:, :2], [(0.0, 0.0)], [0, 0, 0, 0, 0])
-    with pytest.raises(BadInput, match="cannot write"):
+    with pytest.raises(BadInput, match="does not exist"):
         schnyder(SQUARE).save(tmp_path / "no" / "such" / "folder.svg")
 
 
@@ -214,3 +216,73 @@ def test_plot_without_matplotlib_names_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.collections", None)
     with pytest.raises(MissingExtra, match=r"ninefold\[plot\]"):
         draw(SQUARE).plot()
+
+
+# -- draw ----------------------------------------------------------------------------------------------------------------
+
+
+def test_one_default_layout_for_python_and_the_command_line():
+    import inspect
+
+    from ninefold.cli.pictures import draw as command
+
+    assert inspect.signature(command).parameters["layout"].default == DEFAULT_LAYOUT == "auto"
+    assert draw(SQUARE).layout == draw(SQUARE, layout="auto").layout == "tutte"
+    assert draw(SQUARE).to_svg() == draw(SQUARE, layout="tutte").to_svg()
+
+
+def test_a_drawing_keeps_what_it_highlights():
+    room, door = SQUARE.cycle(["0", "1", "2", "3"]), SQUARE.vertex(0)
+    drawing = draw(SQUARE, highlight={"room": room, "door": door})
+    assert drawing.highlight == (("room", room), ("door", door))
+    for picture in (drawing.to_svg(), drawing._repr_svg_()):
+        assert "room: region of 1 face" in picture
+        assert "door: vertex 0" in picture
+    assert drawing.to_svg() == draw(SQUARE).to_svg(highlight={"room": room, "door": door})
+    assert "room" not in drawing.to_svg(highlight=[])
+    assert "X: vertex 0" in drawing.to_svg(highlight=door)
+    assert "room" not in drawing.to_svg(highlight=door)
+    assert draw(SQUARE, highlight=[room]).highlight == draw(SQUARE, highlight=room).highlight == (("X", room),)
+    assert drawing.highlighting([door]).highlight == (("X", door),)
+    assert "highlight room, door" in repr(drawing)
+    assert draw(SQUARE, highlight=[]).highlight == ()
+
+
+def test_saved_pictures_show_the_highlight(tmp_path):
+    draw(SQUARE, highlight={"way in": SQUARE.edge("0", "1")}).save(tmp_path / "a.svg")
+    assert "way in: line of 1 edge" in (tmp_path / "a.svg").read_text()
+
+
+@pytest.mark.parametrize(
+    ("given", "match"),
+    [
+        (lambda: SQUARE.vertex(0), r"draw takes a map, and Point\(0\) is a set of one: draw\(X.plane, highlight=\[X\]\)"),
+        (lambda: Mapper(), r"draw takes a map, not the Mapper that holds one: draw\(X.plane\)"),
+        (lambda: samples.load("figure8"), r"draw takes a map, and a Source makes one: draw\(X.to_map\(\)\)"),
+        (lambda: "plan.atlas", "draw takes a PlaneMap, not 'plan.atlas'; nf.read_map"),
+        (lambda: None, "draw takes a PlaneMap, not None"),
+    ],
+)
+def test_drawing_what_is_no_map_says_what_to_call(given, match):
+    with pytest.raises(BadInput, match=match):
+        draw(given())
+
+
+@pytest.mark.parametrize("highlight", ["cycle:0,1,2,3", 7, ["cycle:0,1,2,3"], {"room": 3}])
+def test_only_sets_are_highlighted(highlight):
+    with pytest.raises(BadInput, match=r"highlight.*plane.parse makes a set of text"):
+        draw(SQUARE, highlight=highlight)
+    with pytest.raises(DifferentMaps):
+        draw(SQUARE, highlight=[NESTED.vertex(0)])
+
+
+def test_a_map_points_to_its_picture():
+    for name in ("draw", "plot", "show", "to_svg", "points"):
+        with pytest.raises(AttributeError, match=rf"no attribute '{name}'; ninefold.draw\(plane\) makes a picture"):
+            getattr(SQUARE, name)
+    with pytest.raises(AttributeError, match=r"no attribute 'vertices'$"):
+        SQUARE.vertices  # noqa: B018
+    assert not hasattr(SQUARE, "__array__")
+    assert "ninefold.draw(plane)" in SQUARE._repr_html_()
+    assert repr(SQUARE) in SQUARE._repr_html_()
+    assert "ninefold.draw(plane)" in PlaneMap.__doc__

@@ -173,7 +173,8 @@ def test_files_that_cannot_be_read_are_refused(tmp_path):
         read_geojson(tmp_path / "latin.geojson")
     with pytest.raises(BadInput, match="cannot be read"):
         read_geojson(tmp_path)
-    with pytest.raises(BadInput, match="no source with geometry"):
+    (tmp_path / "town.dwg").write_bytes(b"AC1032")
+    with pytest.raises(BadInput, match=r"town\.dwg: not lines in GeoJSON \(\.geojson\)"):
         read_source(tmp_path / "town.dwg")
 
 

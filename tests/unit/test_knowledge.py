@@ -102,6 +102,28 @@ def test_bad_input(plane, names):
         KnowledgeBase(plane, names, [("x", "y")])
 
 
+def test_a_statement_of_a_network_is_taken_by_its_words(plane, names):
+    coarse = Network("rcc5")
+    said = coarse.add("boiler room", "plant", "EQ", label="hearsay")
+    base = KnowledgeBase(plane, names, [said])
+    assert base.said[0].relations == ("EQ",)
+    assert base.said[0].mask == base.network.calculus.relation("EQ") != said.mask
+
+
+def test_one_class_of_statement_serves_networks_and_atlases(plane, tmp_path):
+    import ninefold as nf
+
+    assert nf.io.Statement is nf.reasoner.Statement
+    said = Network("rcc8").add("pond", "garden", "NTPP | TPP", "the deed", 2)
+    assert repr(said) == "Statement(a='pond', relations=('TPP', 'NTPP'), b='garden', label='the deed', weight=2.0)"
+    with nf.Atlas.from_map(plane, tmp_path / "town.atlas") as atlas:
+        atlas.declare(said)
+        (kept,) = atlas.statements
+    assert kept == nf.io.Statement("pond", ("TPP", "NTPP"), "garden", "the deed", 2)
+    assert (str(kept), kept.cost, kept.hard) == ("the deed", 2.0, False)
+    assert str(nf.io.Statement("pond", ("TPP", "NTPP"), "garden")) == "pond TPP|NTPP garden"
+
+
 def test_an_atlas_brings_its_regions_and_statements(plane, names, tmp_path):
     from ninefold.io.atlas.atlas import Atlas
     from ninefold.io.atlas.records import Statement

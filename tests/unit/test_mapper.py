@@ -7,6 +7,7 @@ import pytest
 
 from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
 from ninefold.mapping import Closure, Heading, Mapper, Samples, Visit, Walk, WalkHeader, build
+from ninefold.mapping.robot.legs import LegReader
 
 
 def events(*items):
@@ -194,7 +195,7 @@ def test_open_exits_are_kept_until_travelled():
     for event in events(90, Visit("b", exits(-90, 10))):
         mapper.step(event)
     assert [(place, round(heading.degrees)) for place, heading in mapper.open_exits] == [("a", 0), ("a", 180), ("b", 10)]
-    assert mapper.warnings == ("3 exits were never travelled, the first at 'a', 0.0 deg",)
+    assert mapper.warnings == ("3 exits were never travelled, the first at 'a', 0 deg",)
     assert (mapper.n_edges, mapper.n_faces) == (1, 1)
 
 
@@ -251,7 +252,7 @@ def test_tolerance_comes_from_the_header_or_the_argument():
 
 
 def test_repr():
-    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edges, 1 faces)"
+    assert repr(mapped("a", 0, "b")) == "Mapper(3 events, 2 vertices, 1 edge, 1 face)"
 
 
 # -- order of events ------------------------------------------------------------------------------------------------------
@@ -275,7 +276,12 @@ def test_samples_too_coarse():
 
 
 def test_numbers_that_are_no_angles():
-    refused(WalkError, "numbers so large that their differences mean nothing", "a", Samples((1e17, 3.0)), "b")
+    with pytest.raises(WalkError, match=r"a sample of 1e\+17 radians is too large for an angle: beyond 8388608 radians"):
+        Samples((3.0, 1e17))
+    reader = LegReader()
+    reader.take((1e17, 3.0))
+    with pytest.raises(WalkError, match="numbers so large that their differences mean nothing"):
+        reader.read()
 
 
 def test_names_that_cannot_be():
@@ -394,9 +400,21 @@ def test_exits_that_miss_a_known_edge():
 
 
 def test_a_leg_along_no_exit():
-    refused(WalkError, "the leg leaves 'a' at 45 deg, along none of its 2 exits", Visit("a", exits(0, 90)), 45, "b")
-    refused(WalkError, "the leg reaches 'b' at 180 deg, along none of its 1 exit$", "a", 0, Visit("b", exits(90)))
-    refused(WalkError, "the leg leaves 'a' at 0 deg, along none of its 0 exits", Visit("a", ()), 0, "b")
+    refused(
+        WalkError,
+        "the leg leaves 'a' at 45 deg, along none of its 2 exits; exits seen: 0, 90 deg$",
+        Visit("a", exits(0, 90)),
+        45,
+        "b",
+    )
+    refused(
+        WalkError,
+        "the leg reaches 'b' at 180 deg, along none of its 1 exit; exits seen: 90 deg$",
+        "a",
+        0,
+        Visit("b", exits(90)),
+    )
+    refused(WalkError, "the leg leaves 'a' at 0 deg, along none of its 0 exits; exits seen: none$", Visit("a", ()), 0, "b")
 
 
 # -- the plane ------------------------------------------------------------------------------------------------------------

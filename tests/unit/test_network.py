@@ -7,7 +7,8 @@ import pytest
 
 from ninefold.encodings import ALLEN, POINT, RCC8
 from ninefold.errors import BadInput, NinefoldError, UnknownName
-from ninefold.reasoner.networks.network import Network, Statement
+from ninefold.reasoner.networks.network import Network
+from ninefold.reasoner.networks.statement import Statement
 
 
 @pytest.fixture
@@ -21,8 +22,10 @@ def house():
 
 
 def test_statements_are_kept_as_given(house):
-    assert house.statements[0] == Statement(0, "kitchen", "house", RCC8.relation("NTPP"), "plan", None)
-    assert house.statements[2] == Statement(2, "garden", "house", RCC8.relation("EC PO"), None, 2.0)
+    assert house.statements[0] == Statement("kitchen", ("NTPP",), "house", "plan", index=0, mask=RCC8.relation("NTPP"))
+    assert house.statements[2] == Statement(
+        "garden", ("EC", "PO"), "house", weight=2.0, index=2, mask=RCC8.relation("EC PO")
+    )
     assert [s.cost for s in house.statements] == [1.0, math.inf, 2.0, 1.0]
     assert [s.hard for s in house.statements] == [False, True, False, False]
     assert [str(s) for s in house.statements] == ["plan", "statement 2", "statement 3", "statement 4"]

@@ -10,15 +10,20 @@ import typer
 from ninefold.cli import networks
 from ninefold.errors import BadInput, NinefoldError, UnknownName
 
-COMMANDS = ("check", "infer", "ask", "repair", "scenarios", "compose")
+COMMANDS = ("check", "prove", "infer", "ask", "repair", "scenarios", "compose")
+
+
+def typer_app():
+    app = typer.Typer()
+    for name in COMMANDS:
+        app.command(name)(getattr(networks, name))
+    return app
 
 
 @pytest.fixture
 def run(capsys):
     """Run a command; return exit code and stdout, read as JSON if it is."""
-    app = typer.Typer()
-    for name in COMMANDS:
-        app.command(name)(getattr(networks, name))
+    app = typer_app()
 
     def runner(*arguments):
         code = app(args=[str(argument) for argument in arguments], standalone_mode=False)
@@ -78,6 +83,16 @@ def test_check_inconsistent(run, broken):
     assert "shed" not in text
     code, found = run("check", broken, "--no-conflict", "--json")
     assert (code, found["conflict"]) == (1, None)
+
+
+def test_counts_agree_with_their_nouns(run, tmp_path):
+    one = network(tmp_path / "one.csv", ("a", "meet", "b", "", ""))
+    assert "(2 entities, 1 statement, " in run("check", one)[1]
+    none = network(tmp_path / "none.csv", ("a", "equal", "a", "", ""))
+    assert "(1 entity, 1 statement, " in run("check", none)[1]
+    two = network(tmp_path / "two.csv", ("a", "meet", "b", "", ""), ("a", "inside", "b", "2", ""))
+    assert "minimal conflict of 2 statements:" in run("check", two)[1]
+    assert run("repair", two)[1].startswith("drop 1 of 2 statements, cost 1\n")
 
 
 def test_check_draws(run, house, broken, tmp_path):
@@ -176,3 +191,44 @@ def test_point_networks(run, tmp_path):
     assert (code, found["relations"]) == (0, ["<"])
     code, found = run("check", path, "--calculus", "point", "--json")
     assert (code, found["verdict"]) == (0, "consistent")
+
+
+def test_proofs_are_written_in_every_format_and_said(run, broken, tmp_path, capsys):
+    def told(*arguments):
+        code = typer_app()(args=[str(argument) for argument in arguments], standalone_mode=False)
+        out, err = capsys.readouterr()
+        return code, json.loads(out) if out.startswith("{") else out, err
+
+    log, drat, lrat = tmp_path / "a.log", tmp_path / "b.drat", tmp_path / "c.lrat"
+    code, found, err = told("check", broken, "--proof", log, "--json")
+    assert (code, found["proof"], "cnf" in found) == (1, str(log), False)
+    assert err == f"ninefold: wrote the proof {log}; `prove` confirms it\n"
+    assert told("prove", broken, log)[:2] == (0, "proved: 1 clause confirmed\n")
+    code, found, err = told("check", broken, "--proof", drat, "--proof-format", "drat", "--json")
+    assert (code, found["proof"], found["cnf"]) == (1, str(drat), str(drat.with_suffix(".cnf")))
+    assert err == f"ninefold: wrote the proof {drat} and the formula {drat.with_suffix('.cnf')} that it refutes\n"
+    assert drat.read_text().endswith("\n0\n")
+    assert "\np cnf " in drat.with_suffix(".cnf").read_text()
+    assert told("check", broken, "--proof", lrat, "--proof-format", "lrat")[0] == 1
+    assert lrat.with_suffix(".cnf").read_bytes() == drat.with_suffix(".cnf").read_bytes()
+    assert lrat.read_text() != drat.read_text()
+
+
+def test_no_proof_of_what_is_consistent(house, tmp_path, capsys):
+    log = tmp_path / "a.drat"
+    assert typer_app()(["check", str(house), "--proof", str(log), "--proof-format", "drat"], standalone_mode=False) == 0
+    assert capsys.readouterr().err == "ninefold: no proof: the network is consistent\n"
+    assert sorted(tmp_path.iterdir()) == [house]
+
+
+def test_proof_files_that_cannot_be(run, broken, tmp_path):
+    (tmp_path / "a.cnf").write_text("mine")
+    with pytest.raises(BadInput, match=r"a\.cnf: exists"):
+        run("check", broken, "--proof", tmp_path / "a.drat", "--proof-format", "drat")
+    with pytest.raises(BadInput, match=r"another ending, such as \.drat"):
+        run("check", broken, "--proof", tmp_path / "b.cnf", "--proof-format", "drat")
+    with pytest.raises(BadInput, match="needs --proof LOG"):
+        run("check", broken, "--proof-format", "drat")
+    with pytest.raises(UnknownName, match=r"dart.*drat"):
+        run("check", broken, "--proof", tmp_path / "b", "--proof-format", "dart")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.cnf", "broken.csv"]

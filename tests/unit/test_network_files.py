@@ -283,7 +283,7 @@ def test_bad_json(text, message):
 
 
 def test_sizes_that_make_no_sense():
-    with pytest.raises(TooLarge, match=r"4000000001 entities for 1 statements would take 931 GiB"):
+    with pytest.raises(TooLarge, match=r"4,000,000,001 entities for 1 statement would take 931 GiB"):
         network_from_text("4000000000\n0 1 ( DC )\n.", "csp")
     with pytest.raises(TooLarge, match="an index of 20 digits"):
         network_from_text("1" * 20, "csp")
@@ -314,7 +314,7 @@ def test_files_that_cannot_be_written(tmp_path):
     net = full()
     with pytest.raises(UnknownName, match="there is no network format named 'xlsx'"):
         write_network(net, tmp_path / "net.xlsx")
-    with pytest.raises(BadInput, match="cannot write"):
+    with pytest.raises(BadInput, match=r"the folder .* does not exist"):
         write_network(net, tmp_path / "no" / "net.csv")
     net.add("\ud800", "house", "DC")
     with pytest.raises(BadInput, match="surrogates not allowed"):

@@ -136,6 +136,13 @@ def test_given_outer_is_held_against_the_headings():
         ([(0, 0), (0, 0)], [(0, 1)], None, "no length"),
         ([(0, 0), (1, 1), (2, 2)], [(0, 1), (0, 2)], None, "same direction"),
         ([(0, 0), (np.nan, 1)], [(0, 1)], None, "not finite"),
+        (
+            [(0, 0), (1e308, 0), (-1e308, 1)],
+            [(0, 1), (1, 2), (2, 0)],
+            None,
+            r"point 1, \(1e\+308, 0\), lies so far out.*1e\+150",
+        ),
+        ([(0, 0), (1, 0)], [(0, 1)], [[(0, 0), (5, -1e200), (1, 0)]], "the path of edge '0' lies so far out"),
         ([(0, 0), (1, 1)], [(0, 5)], None, "rows of points"),
         ([(0, 0), (1, 1)], [(0, 1)], [[(0, 0), (5, 5)]], "begin and end"),
         ([(0, 0), (1, 1)], [(0, 1)], [[(0, 0), (2, 2), (1, 1)]], "turns back"),

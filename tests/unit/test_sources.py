@@ -157,3 +157,18 @@ def test_the_district_is_of_the_promised_size_with_its_notice():
 def test_an_unknown_sample_suggests_near_ones():
     with pytest.raises(UnknownName, match="figure8"):
         read_source("sample:figure-8")
+
+
+def test_a_crossing_is_told_in_the_coordinates_of_the_file():
+    lines = [[[24.94, 60.16], [24.96, 60.18]], [[24.94, 60.18], [24.96, 60.16]]]
+    document = {"type": "MultiLineString", "coordinates": lines}
+    with pytest.raises(BadInput, match=r"meet near longitude 24\.950000, latitude 60\.170000; add vertices"):
+        parse_geojson(json.dumps(document)).to_map()
+    across = [[[179.99, 0.0], [-179.99, 0.02]], [[179.99, 0.02], [-179.99, 0.0]], [[-179.99, 0.02], [-179.9, 0.02]]]
+    document["coordinates"] = across
+    found = parse_geojson(json.dumps(document))
+    longitude, latitude = found.projection.degrees(found.crossings[0].at)
+    assert (abs(longitude), latitude) == (180.0, 0.01)
+    document |= {"coordinates": [[[0, 0], [4, 4]], [[0, 4], [4, 0]]], "ninefold": {"units": "m"}}
+    with pytest.raises(BadInput, match=r"meet near \(2\.0, 2\.0\) metres; add vertices"):
+        parse_geojson(json.dumps(document)).to_map()

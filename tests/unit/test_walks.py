@@ -10,7 +10,6 @@ import sys
 import pytest
 
 from ninefold.errors import NinefoldError, WalkError
-from ninefold.io.walks import json_lines as walks
 from ninefold.io.walks.json_lines import WalkReader, iter_events, read_header, read_walk, write_walk
 from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader
 
@@ -97,10 +96,10 @@ def test_a_byte_order_mark_and_white_space_are_let_pass(log, line):
     ("header", "message"),
     [
         ("", "the file is empty|the first line is no walk header"),
-        ('{"place": "a"}', "log.jsonl:1: the first line is no walk header"),
+        ('{"place": "a"}', "log.jsonl, line 1: the first line is no walk header"),
         ('{"ninefold": "atlas", "version": 1, "heading": "yaw-rad"}', "the first line is no walk header"),
-        ("[]", r"log.jsonl:1: a line holds one JSON object, not \[\]"),
-        ("walk", "log.jsonl:1: not JSON: Expecting value at column 1"),
+        ("[]", r"log.jsonl, line 1: a line holds one JSON object, not \[\]"),
+        ("walk", "log.jsonl, line 1: not JSON: Expecting value at column 1"),
         ('{"ninefold": "walk", "version": 2, "heading": "yaw-rad"}', "format version 2, newer than 1; update ninefold"),
         ('{"ninefold": "walk", "version": "1", "heading": "yaw-rad"}', "\"version\" is 1, not '1'"),
         ('{"ninefold": "walk", "version": 0, "heading": "yaw-rad"}', '"version" is 1, not 0'),
@@ -162,7 +161,11 @@ H = '{"heading": 1}'
         ([A, H, '{"place": "b", "edge": {}}'], 4, '"edge" is a name, not'),
         (['{"place": "a", "exits": 1}'], 2, '"exits" is a list of numbers'),
         (['{"place": "a", "exits": [1e999]}'], 2, '"exits" holds a number that is not finite'),
-        (['{"place": "a", "exits": [1, 2, 1.01]}'], 2, "two exits, 57.3 and 57.87 deg .* within the tolerance of 1.146 deg"),
+        (
+            ['{"place": "a", "exits": [1, 2, 1.01]}'],
+            2,
+            "two exits, 1 rad and 1.01 rad, are within the tolerance of 0.02 rad",
+        ),
         (['{"place": "a", "exits": [3.14, -3.14]}'], 2, "two exits, .* are within the tolerance"),
         (['{"place": "a", "t": "noon"}'], 2, "\"t\" is a number of seconds, not 'noon'"),
         (['{"place": "a", "t": 1e999}'], 2, '"t" is not finite'),
@@ -175,13 +178,13 @@ H = '{"heading": 1}'
 def test_lines_refused(log, lines, line, message):
     with pytest.raises(WalkError, match=message) as caught:
         read_walk(log(*lines))
-    assert caught.value.where.endswith(f"log.jsonl:{line}")
+    assert caught.value.where.endswith(f"log.jsonl, line {line}")
     assert str(caught.value).startswith(caught.value.where)
     assert "\n" not in str(caught.value)
 
 
 def test_blank_lines_count_in_line_numbers(log):
-    with pytest.raises(WalkError, match=r"log\.jsonl:5: "):
+    with pytest.raises(WalkError, match=r"log\.jsonl, line 5: "):
         read_walk(log("", A, "", "nonsense"))
 
 
@@ -241,8 +244,8 @@ def test_an_old_file_stays_when_the_new_one_cannot_be_written(tmp_path, monkeypa
     def full(descriptor):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(walks.os, "fsync", full)
-    with pytest.raises(WalkError, match=r"walk\.jsonl: the walk cannot be written: No space left on device"):
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(WalkError, match=r"walk\.jsonl: cannot be written \(No space left on device\); nothing was changed"):
         write_walk(WALK, path)
     assert path.read_text() == "precious"
     assert [p.name for p in tmp_path.iterdir()] == ["walk.jsonl"]
@@ -260,13 +263,13 @@ def test_a_file_that_may_not_grow_for_real(tmp_path):
     path = tmp_path / "walk.jsonl"
     path.write_text("precious")
     ran = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True)
-    assert ran.stdout == f"{path}: the walk cannot be written: File too large\n"
+    assert ran.stdout == f"{path}: cannot be written (File too large); nothing was changed\n"
     assert path.read_text() == "precious"
     assert [p.name for p in tmp_path.iterdir()] == ["walk.jsonl"]
 
 
 def test_a_folder_that_does_not_exist(tmp_path):
-    with pytest.raises(WalkError, match="the walk cannot be written: No such file or directory"):
+    with pytest.raises(WalkError, match=r"the folder .*nowhere does not exist"):
         write_walk(WALK, tmp_path / "nowhere" / "walk.jsonl")
 
 
@@ -283,7 +286,7 @@ def test_a_folder_that_is_read_only(tmp_path):
     folder.mkdir(mode=0o555)
     path = folder / "walk.jsonl"
     ran = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True)
-    assert ran.stdout == f"{path}: the walk cannot be written: Permission denied\n"
+    assert ran.stdout == f"{path}: cannot be written (Permission denied); nothing was changed\n"
 
 
 @pytest.mark.parametrize(
@@ -296,6 +299,21 @@ def test_a_folder_that_is_read_only(tmp_path):
     ],
 )
 def test_what_no_reader_would_take_is_not_written(tmp_path, walk):
-    with pytest.raises(NinefoldError, match="the walk cannot be written"):
+    with pytest.raises(NinefoldError, match="cannot be written"):
         write_walk(walk, tmp_path / "walk.jsonl")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "limit"), [("yaw-deg", "4.81e+08 deg"), ("bearing-deg", "4.81e+08 deg"), ("yaw-rad", "8.39e+06 rad")]
+)
+@pytest.mark.parametrize("line", ['{"heading": 1e300}', '{"headings": [0, -1e300]}', '{"place": "a", "exits": [1e300, 0]}'])
+def test_numbers_too_large_for_an_angle_are_named_with_their_line(tmp_path, unit, limit, line):
+    path = tmp_path / "w.jsonl"
+    first = "" if "place" in line else '{"place": "a"}\n'
+    path.write_text(f'{{"ninefold": "walk", "version": 1, "heading": "{unit}"}}\n{first}{line}\n')
+    where = 2 if "place" in line else 3
+    with pytest.raises(WalkError) as caught:
+        read_walk(path)
+    assert f"line {where}: " in str(caught.value)
+    assert f"too large for an angle: {'-' if '-1' in line else ''}1e+300, and angles go up to {limit}" in str(caught.value)

@@ -6,7 +6,7 @@
 ``_file``          one connection and its transactions; ``_schema`` the tables and what an open file is checked for
 ``_event_log``     the walk as an append-only log, and snapshots of the map
 ``_map_rows``      a map as rows of blobs and names
-``_definitions``   sets as what defines them, never as face numbers; ``_set_lists`` lists that name several sets
+``_definitions``   sets as what defines them, never as face numbers
 =================  ==============================================================================================
 
 The tables are documented in the reference; any SQLite tool reads them.

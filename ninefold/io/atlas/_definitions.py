@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError
 from ninefold.mapping import Line, PlaneMap, Point, Region, Set
+from ninefold.mapping.select import line, path
 
 from ._schema import one_line
 
@@ -52,9 +54,9 @@ def set_of(plane: PlaneMap, kind: str, definition: str) -> Set:
             case "point", {"vertex": str(vertex)}:
                 return plane.vertex(vertex)
             case "line", {"start": str(start), "edges": [*edges]}:
-                return plane.path([start, *(f"@{edge}" for edge in edges)])
+                return path(plane, [{"vertex": start}, *({"edge": edge} for edge in edges)])
             case "line", {"edges": [*edges]}:
-                return plane.line(edges)
+                return line(plane, [{"edge": edge} for edge in edges])
             case "region", {"boundary": [*edges]}:
                 return _inside(plane, edges)
             case _:
@@ -65,9 +67,9 @@ def set_of(plane: PlaneMap, kind: str, definition: str) -> Set:
 
 
 def _inside(plane: PlaneMap, edges: list[Any]) -> Region:
-    rim = plane.line(edges)
+    rim = line(plane, [{"edge": edge} for edge in edges])
     if rim.boundary:
-        raise BadInput(f"its boundary is not closed at {plane.vertex_names[min(rim.boundary)]!r}")
+        raise BadInput(f"its boundary is not closed at {quoted(plane.vertex_names[min(rim.boundary)])}")
     rows = np.array(rim.edges, np.int64)
     # Any edge set of even degrees is a sum of cycles, and its inside the sum of theirs.
     return Region.from_ends(plane, plane.containment.inside(rows), rows)

@@ -11,9 +11,10 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ninefold.errors import AtlasError, BadInput, NinefoldError
+from ninefold._wording import quoted
+from ninefold.errors import AtlasError, BadInput, NinefoldError, WalkError
 from ninefold.mapping.robot.mapper import Mapper
-from ninefold.mapping.robot.walk import WalkHeader
+from ninefold.mapping.robot.walk import Samples, Visit, WalkHeader
 
 from ..walks.json_lines import WalkReader, event_to_json, header_to_json
 from . import _schema
@@ -179,13 +180,15 @@ def checked_time(event: Event, before: float) -> float:
     Raises
     ------
     BadInput
-        If it is no finite number, or goes back.
+        If it is no finite number, or goes back; or if the event is none.
     """
+    if not isinstance(event, Visit | Samples):
+        raise WalkError(f"an event is a Visit or Samples, not {quoted(event)}")
     if event.t is None:
         return before
     if isinstance(event.t, bool) or not isinstance(event.t, int | float) or not before <= event.t < math.inf:
         after = "" if before == -math.inf else f" that does not go back from {before:g}"
-        raise BadInput(f"the time of an event is a finite number of seconds{after}, not {event.t!r}")
+        raise BadInput(f"the time of an event is a finite number of seconds{after}, not {quoted(event.t)}")
     return float(event.t)
 
 

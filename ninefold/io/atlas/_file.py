@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError
 
 from . import _schema
@@ -108,4 +109,4 @@ def text_that_can_be_written() -> Iterator[None]:
     try:
         yield
     except UnicodeEncodeError as error:
-        raise BadInput(f"{error.object[:40]!r} cannot be written as text (UTF-8)") from None
+        raise BadInput(f"{quoted(error.object)} cannot be written as text (UTF-8)") from None

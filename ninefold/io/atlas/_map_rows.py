@@ -100,7 +100,8 @@ def _assemble(facts: dict[str, Any], vertices: list[tuple[Any, ...]], edges: lis
     if not isinstance(outer, int):
         raise TypeError("outer")
     if not edges:
-        return PlaneMap.from_darts([], [], n_vertices=len(vertices), vertex_names=vertex_names)
+        none = np.zeros(0) if facts["headings"] else None
+        return PlaneMap.from_darts([], [], n_vertices=len(vertices), heading=none, turn=none, vertex_names=vertex_names)
     ids, labels, tail, head, next_out, next_back, out, back, turns, tether = zip(*edges, strict=True)
     edge_names = _names("edge", ids, labels)
     heading = turn = None

@@ -12,7 +12,11 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from ninefold._files import shown
+from ninefold._wording import quoted, shortened
 from ninefold.errors import AtlasError
+
+from ..formats import foreign, wrong_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,28 +35,36 @@ TABLES = """
 -- stands for (it may lag behind the log; it is never ahead). outer: a dart with the outer face on its left, -1 for no edge.
 -- vertices, edges: row counts of the stored map. headings: 1 if it has headings and turns, else 0. warnings: JSON list of
 -- sentences, as of the stored map.
-CREATE TABLE meta (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE meta (key TEXT NOT NULL PRIMARY KEY, value NOT NULL) WITHOUT ROWID;
 -- The walk, one event a row, in the form of a line of a walk file with headings in yaw radians.
-CREATE TABLE event (seq INTEGER PRIMARY KEY, json TEXT NOT NULL);
+CREATE TABLE event (seq INTEGER PRIMARY KEY CHECK (seq > 0), json TEXT NOT NULL CHECK (typeof(json) = 'text'));
 -- The map. Ids count from 0; a name that is NULL is the id. Edge e has the darts 2e (from tail to head) and 2e + 1 (back).
-CREATE TABLE vertex (id INTEGER PRIMARY KEY, name TEXT);
+CREATE TABLE vertex (id INTEGER PRIMARY KEY CHECK (id >= 0), name TEXT CHECK (name IS NULL OR typeof(name) = 'text'));
 -- next_out, next_back: the next dart counter-clockwise after dart 2e around tail, after 2e + 1 around head. heading_out and
 -- heading_back: yaw in radians on leaving along the dart; turn: net rotation along 2e; NULL where unknown. tether: 1 for a
 -- virtual edge that ties a separate component to its host face.
 CREATE TABLE edge (
-  id INTEGER PRIMARY KEY, name TEXT, tail INTEGER NOT NULL, head INTEGER NOT NULL,
-  next_out INTEGER NOT NULL, next_back INTEGER NOT NULL,
-  heading_out REAL, heading_back REAL, turn REAL, tether INTEGER NOT NULL
+  id INTEGER PRIMARY KEY CHECK (id >= 0), name TEXT CHECK (name IS NULL OR typeof(name) = 'text'),
+  tail INTEGER NOT NULL CHECK (tail >= 0), head INTEGER NOT NULL CHECK (head >= 0),
+  next_out INTEGER NOT NULL CHECK (next_out >= 0), next_back INTEGER NOT NULL CHECK (next_back >= 0),
+  heading_out REAL, heading_back REAL, turn REAL, tether INTEGER NOT NULL CHECK (tether IN (0, 1))
 );
 CREATE VIEW dart AS
   SELECT 2 * id AS dart, tail, head, next_out AS next_ccw, heading_out AS heading FROM edge
   UNION ALL SELECT 2 * id + 1, head, tail, next_back, heading_back FROM edge;
 -- Named sets. kind: point, line or region. definition: JSON in vertex and edge names, never face numbers: {"vertex": name},
 -- {"edges": [...]} with "start" for a path, or {"boundary": [...]}, the edges around a region. text: as it was given.
-CREATE TABLE named_set (name TEXT PRIMARY KEY, kind TEXT NOT NULL, definition TEXT NOT NULL, text TEXT NOT NULL);
+CREATE TABLE named_set (
+  name TEXT NOT NULL PRIMARY KEY CHECK (typeof(name) = 'text' AND name <> ''),
+  kind TEXT NOT NULL CHECK (kind IN ('point', 'line', 'region')),
+  definition TEXT NOT NULL CHECK (typeof(definition) = 'text'), text TEXT NOT NULL
+);
 -- Declared relations: relations split by spaces. weight NULL counts as 1, infinity is hard.
 CREATE TABLE statement (
-  id INTEGER PRIMARY KEY, a TEXT NOT NULL, relations TEXT NOT NULL, b TEXT NOT NULL, label TEXT, weight REAL
+  id INTEGER PRIMARY KEY, a TEXT NOT NULL CHECK (typeof(a) = 'text' AND a <> ''),
+  relations TEXT NOT NULL CHECK (typeof(relations) = 'text' AND trim(relations) <> ''),
+  b TEXT NOT NULL CHECK (typeof(b) = 'text' AND b <> ''), label TEXT CHECK (label IS NULL OR typeof(label) = 'text'),
+  weight REAL CHECK (weight IS NULL OR (typeof(weight) = 'real' AND weight >= 0))
 );
 -- Where the content comes from: the file, its SHA-256, what made it of it, when (UTC, ISO 8601).
 CREATE TABLE provenance (
@@ -61,6 +73,23 @@ CREATE TABLE provenance (
 """
 
 _MAGIC = b"SQLite format 3\0"
+
+# What has to hold of every row that is read as it is; files of other writers, and older ones, lack the constraints above.
+_SOUND = (
+    ("a named set", "named_set", "name", "typeof(name) = 'text' AND name <> ''"),
+    ("a named set", "named_set", "kind", "typeof(kind) = 'text'"),
+    ("a named set", "named_set", "definition", "typeof(definition) = 'text'"),
+    ("a statement", "statement", "a", "typeof(a) = 'text' AND a <> ''"),
+    ("a statement", "statement", "relations", "typeof(relations) = 'text' AND trim(relations) <> ''"),
+    ("a statement", "statement", "b", "typeof(b) = 'text' AND b <> ''"),
+    ("a statement", "statement", "label", "label IS NULL OR typeof(label) = 'text'"),
+    ("a statement", "statement", "weight", "weight IS NULL OR (typeof(weight) IN ('real', 'integer') AND weight >= 0)"),
+    ("a source", "provenance", "source", "typeof(source) = 'text'"),
+    ("a source", "provenance", "kind", "typeof(kind) = 'text'"),
+    ("a source", "provenance", "sha256", "sha256 IS NULL OR typeof(sha256) = 'text'"),
+    ("a source", "provenance", "tool", "typeof(tool) = 'text'"),
+    ("a source", "provenance", "made", "typeof(made) = 'text'"),
+)
 
 
 def check_file(path: Path) -> None:
@@ -73,13 +102,16 @@ def check_file(path: Path) -> None:
     """
     try:
         with path.open("rb") as file:
-            head = file.read(100)
+            head = file.read(4096)
             size = os.fstat(file.fileno()).st_size
     except FileNotFoundError:
         raise AtlasError(f"{path}: no such file; `ninefold map SOURCE -o {path.name}` makes an atlas") from None
     except OSError as error:
-        raise AtlasError(f"{path}: cannot be read ({error.strerror or error})") from None
+        raise AtlasError(f"{shown(path)}: cannot be read ({error.strerror or error})") from None
     if len(head) < 100 or not head.startswith(_MAGIC):
+        other = foreign(head, "atlas")
+        if other is not None:
+            raise AtlasError(wrong_kind(path, other, "atlas"))
         raise AtlasError(f"{path}: not an atlas ({'the file is empty' if not head else 'not an SQLite database'})")
     number = int.from_bytes(head[68:72], "big")
     version = int.from_bytes(head[60:64], "big")
@@ -126,10 +158,22 @@ def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
             else:
                 connection.execute("PRAGMA query_only = ON")
             connection.execute("SELECT count(*) FROM meta").fetchone()
+            _check_rows(path, connection)
         except BaseException:
             connection.close()
             raise
     return connection
+
+
+def _check_rows(path: Path, connection: sqlite3.Connection) -> None:
+    """Say which set, statement or source of an atlas is damaged, before anybody reads it. O(their number)."""
+    for what, table, column, rule in _SOUND:
+        row = connection.execute(f"SELECT rowid, {column} FROM {table} WHERE NOT ({rule}) LIMIT 1").fetchone()  # noqa: S608
+        if row is not None:
+            found = "NULL" if row[1] is None else quoted(row[1])
+            raise AtlasError(
+                f"{path}: damaged ({what}, row {row[0]} of {table}, has the {column} {found}); restore it from a copy"
+            )
 
 
 def create_tables(path: Path) -> sqlite3.Connection:
@@ -183,6 +227,8 @@ def _reason(error: sqlite3.Error | UnicodeDecodeError) -> str:
         return "the file or its folder is read-only; nothing was changed"
     if primary == sqlite3.SQLITE_CANTOPEN:
         return "cannot be opened (missing, or the folder is read-only)"
+    if primary == sqlite3.SQLITE_CONSTRAINT:
+        return f"refused by a constraint of its tables ({one_line(error)}); nothing was changed"
     if primary in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
         return "damaged or truncated; restore it from a copy or from the walk"
     return f"damaged, or no atlas of ninefold (SQLite says: {one_line(error)})"
@@ -191,4 +237,4 @@ def _reason(error: sqlite3.Error | UnicodeDecodeError) -> str:
 def one_line(words: object) -> str:
     """Return a message fit for one line, however odd the stored text that it quotes."""
     text = " ".join("".join(c if c.isprintable() else " " for c in str(words)).split())
-    return text if len(text) <= 300 else text[:297] + "..."
+    return shortened(text, 300)

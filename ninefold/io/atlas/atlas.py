@@ -12,19 +12,19 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from ninefold._files import published
+from ninefold._wording import quoted
 from ninefold.errors import AtlasError, BadInput, NinefoldError, UnknownName
-from ninefold.mapping import Line, Point, Region
+from ninefold.mapping import Line, Point, Region, Vertex
 from ninefold.mapping.robot.mapper import Mapper
 from ninefold.mapping.robot.walk import Walk, WalkHeader
 from ninefold.mapping.sets import same_map
 
-from ..files import published
 from . import _schema
 from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences
 from ._file import AtlasFile, put, text_that_can_be_written
 from ._map_rows import store_map
-from ._set_lists import set_of_list
 from .records import Provenance, Statement
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ninefold.mapping import PlaneMap, Set
     from ninefold.mapping.robot.walk import Event
 
-__all__ = ["Atlas"]
+__all__ = ["Atlas", "read_plane"]
 
 
 class Atlas:
@@ -60,6 +60,9 @@ class Atlas:
     """
 
     def __init__(self, file: AtlasFile) -> None:
+        if not isinstance(file, AtlasFile):
+            name = quoted(str(file))
+            raise BadInput(f"Atlas.open({name}) opens an atlas; Atlas.create, Atlas.from_walk and Atlas.from_map make one")
         self._file = file
         self._log = EventLog(file)
 
@@ -310,9 +313,7 @@ class Atlas:
         row = self._file.rows("SELECT kind, definition FROM named_set WHERE name = ?", text)
         if row:
             return self._set(self.plane, *row[0])
-        if text.lstrip().startswith("["):
-            return set_of_list(self.plane, text)
-        if ":" not in text:
+        if ":" not in text and not text.lstrip().startswith("["):
             raise self._no_set(text)
         return self.plane.parse(text)
 
@@ -321,7 +322,7 @@ class Atlas:
         error, plane = UnknownName("set", text, self.names), self.plane
         for kind, names, form in (("place", plane.vertex_names, "vertex:"), ("edge", plane.edge_names, "edge:@")):
             if text in names:
-                error.message += f"; the {kind} of that name is {form + text!r}"
+                error.message += f"; the {kind} of that name is {quoted(form + text)}"
         return error
 
     def name(self, name: str, item: Set | str, *, force: bool = False) -> Set:
@@ -359,8 +360,8 @@ class Atlas:
         if isinstance(item, str):
             return self.parse(item), item
         if not isinstance(item, Point | Line | Region):
-            raise BadInput(f"a set is a point, line or region of the map, or its text, not {item!r}")
-        same_map(item, Point(self.plane, 0))
+            raise BadInput(f"a set is a point, line or region of the map, or its text, not {quoted(item)}")
+        same_map(item, Point(self.plane, Vertex(0)))
         return item, item.text
 
     def rename(self, old: str, new: str) -> None:
@@ -406,6 +407,12 @@ class Atlas:
         return tuple(Provenance(*row) for row in rows)
 
 
+def read_plane(path: str | PathLike[str]) -> PlaneMap:
+    """Return the map of an atlas file."""
+    with Atlas.open(path, writable=False) as atlas:
+        return atlas.plane
+
+
 def _put_provenance(connection: sqlite3.Connection, record: Provenance | None) -> None:
     if record is not None:
         row = (record.source, record.kind, record.sha256, record.tool, record.made)
@@ -414,11 +421,11 @@ def _put_provenance(connection: sqlite3.Connection, record: Provenance | None) -
 
 def _check_name(name: str) -> None:
     if not isinstance(name, str) or not name.strip() or not name.isprintable() or ":" in name:
-        raise BadInput(f"{name!r} cannot name a set: a name is printable text without a colon")
+        raise BadInput(f"{quoted(name)} cannot name a set: a name is printable text without a colon")
 
 
 def _name_taken(name: str) -> BadInput:
-    return BadInput(f"{name!r} is the name of a set already; choose another, or --force (force=True) to replace it")
+    return BadInput(f"{quoted(name)} is the name of a set already; choose another, or --force (force=True) to replace it")
 
 
 def _discard_log_of(path: Path) -> None:

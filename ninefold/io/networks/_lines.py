@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.encodings.library import CALCULI, calculus_named
 from ninefold.errors import BadInput, NinefoldError, UnknownName
 
@@ -53,7 +54,7 @@ def same_calculus(told: Calculus | None, said: str | None, where: str) -> Calcul
         return told or calculus_named("rcc8")
     if told is not None:
         if told.name.casefold() != said.casefold() and _known(said) != told:
-            raise BadInput(f"{where}: the file is in {said!r}, but {told.name!r} was asked for")
+            raise BadInput(f"{where}: the file is in {quoted(said)}, but {quoted(told.name)} was asked for")
         return told
     try:
         return calculus_named(said)

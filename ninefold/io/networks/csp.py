@@ -30,6 +30,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Any
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, NinefoldError, TooLarge
 from ninefold.reasoner.networks.network import Network
 
@@ -99,7 +100,7 @@ def _read(skipped: int, lines: list[str], told: Calculus | None, file: str) -> t
         elif not line.startswith("#"):
             found = _LINE.fullmatch(line)
             if found is None:
-                raise BadInput(f"{where}: a statement is 'i j ( R1 R2 )', not {_shown(line)}")
+                raise BadInput(f"{where}: a statement is 'i j ( R1 R2 )', not {quoted(line)}")
             i, j = (_index(digits, where) for digits in found.groups()[:2])
             statements.append((i, j, found[3], found[4], number))
     notes = [] if lines[-1].startswith(".") else [f"{file} has no final '.': it may have been cut off"]
@@ -111,7 +112,7 @@ def _first_line(skipped: int, lines: list[str], file: str) -> tuple[int, re.Matc
         if line and not line.startswith("#"):
             found = _FIRST.fullmatch(line)
             if found is None:
-                raise BadInput(f"{file}, line {number}: a csp file starts with its highest index, not {_shown(line)}")
+                raise BadInput(f"{file}, line {number}: a csp file starts with its highest index, not {quoted(line)}")
             return number, found
     raise BadInput(f"{file}: empty; a csp file starts with its highest index")
 
@@ -146,8 +147,8 @@ def _network(
     if n > _IDLE_ENTITIES and n > 100 * len(statements):
         size = n * ENTITY_BYTES / 2**30
         raise TooLarge(
-            f"{file}: {n} entities for {len(statements)} statements would take {size:.3g} GiB; "
-            "the first number is the highest index"
+            f"{file}: {counted(n, 'entity', 'entities')} for {counted(len(statements), 'statement')} would take "
+            f"{size:.3g} GiB; the first number is the highest index"
         )
     calculus = same_calculus(told, extra.get("calculus"), file)
     net = Network(calculus)
@@ -193,10 +194,6 @@ def _extra(comment: str, where: str) -> dict[str, Any]:
     if not isinstance(names, list) or not isinstance(found.get("calculus", ""), str):
         raise BadInput(f"{where}: 'entities' is a list of names and 'calculus' a name")
     return found
-
-
-def _shown(line: str) -> str:
-    return repr(line if len(line) <= 60 else line[:57] + "...")
 
 
 def write(net: Network) -> str:

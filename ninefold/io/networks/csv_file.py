@@ -12,6 +12,7 @@ import csv
 import io
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 from ninefold.reasoner.networks.network import Network
 
@@ -64,11 +65,11 @@ def _header(cells: list[str], where: str) -> dict[str, int]:
         if column not in COLUMNS:
             raise BadInput(f"{where}: {UnknownName('column', cell, COLUMNS)}; the header is {','.join(COLUMNS)}")
         if column in place:
-            raise BadInput(f"{where}: column {column!r} is there twice")
+            raise BadInput(f"{where}: column {quoted(column)} is there twice")
         place[column] = k
     missing = [column for column in COLUMNS[:3] if column not in place]
     if missing:
-        raise BadInput(f"{where}: column {missing[0]!r} is missing; the header is {','.join(COLUMNS)}")
+        raise BadInput(f"{where}: column {quoted(missing[0])} is missing; the header is {','.join(COLUMNS)}")
     return place
 
 
@@ -78,7 +79,7 @@ def _weight(cell: str) -> float | None:
     try:
         return float(cell)
     except ValueError:
-        raise BadInput(f"weight {cell!r} is no number; leave it empty for 1, or write inf") from None
+        raise BadInput(f"weight {quoted(cell)} is no number; leave it empty for 1, or write inf") from None
 
 
 def write(net: Network) -> str:

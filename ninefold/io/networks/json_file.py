@@ -16,6 +16,7 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 from ninefold.reasoner.networks.network import Network
 
@@ -43,7 +44,7 @@ def read(text: str, told: Calculus | None, file: str) -> tuple[Network, list[str
     _only(found, _KEYS, file)
     said = found.get("calculus")
     if said is not None and not isinstance(said, str):
-        raise BadInput(f"{file}: 'calculus' is a name, not {_shown(said)}")
+        raise BadInput(f"{file}: 'calculus' is a name, not {quoted(said)}")
     calculus = same_calculus(told, said, file)
     net = Network(calculus)
     for name in _list(found, "entities", file):
@@ -54,14 +55,14 @@ def read(text: str, told: Calculus | None, file: str) -> tuple[Network, list[str
     for number, entry in enumerate(_list(found, "statements", file), start=1):
         where = f"{file}, statement {number}"
         if not isinstance(entry, dict):
-            raise BadInput(f"{where}: a statement is an object with {', '.join(_STATEMENT_KEYS)}, not {_shown(entry)}")
+            raise BadInput(f"{where}: a statement is an object with {', '.join(_STATEMENT_KEYS)}, not {quoted(entry)}")
         _only(entry, _STATEMENT_KEYS, where)
         for key in _STATEMENT_KEYS[:3]:
             if key not in entry:
-                raise BadInput(f"{where}: {key!r} is missing")
+                raise BadInput(f"{where}: {quoted(key)} is missing")
         relations = entry["relations"]
         if not isinstance(relations, str | list):
-            raise BadInput(f"{where}: 'relations' is a list of names, not {_shown(relations)}")
+            raise BadInput(f"{where}: 'relations' is a list of names, not {quoted(relations)}")
         weight = math.inf if entry.get("weight") == "inf" else entry.get("weight")
         with at(where, calculus):
             net.add(entry["a"], entry["b"], relations, entry.get("label"), weight)
@@ -72,7 +73,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise ValueError(f"key {next(key for key in keys if keys.count(key) > 1)!r} is there twice in one object")
+        raise ValueError(f"key {quoted(next(key for key in keys if keys.count(key) > 1))} is there twice in one object")
     return found
 
 
@@ -85,13 +86,8 @@ def _only(found: dict[str, Any], keys: tuple[str, ...], where: str) -> None:
 def _list(found: dict[str, Any], key: str, file: str) -> list[Any]:
     value = found.get(key, [])
     if not isinstance(value, list):
-        raise BadInput(f"{file}: {key!r} is a list, not {_shown(value)}")
+        raise BadInput(f"{file}: {quoted(key)} is a list, not {quoted(value)}")
     return value
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def write(net: Network) -> str:

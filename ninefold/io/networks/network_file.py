@@ -24,15 +24,17 @@ Network(rcc8, 3 entities, 2 statements)
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ninefold._files import shown, write_text
+from ninefold._wording import quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
 
+from ..formats import foreign, told_by, wrong_kind
 from . import csp, csv_file, json_file
 
 if TYPE_CHECKING:
@@ -145,23 +147,18 @@ def network_to_text(net: Network, kind: str) -> str:
 
 
 def write_network(net: Network, path: str | os.PathLike[str], *, kind: str | None = None) -> None:
-    """Write a network to a file, in the format of its suffix if none is given.
+    """Write a network to a file, in the format of its suffix if none is given; a file that is there is replaced.
 
     Raises
     ------
     UnknownName
         A format or suffix that is none of `NETWORK_FORMATS`.
     BadInput
-        The file cannot be written.
+        The file cannot be written; what was there before stays.
     """
     file = Path(path)
     text = network_to_text(net, kind or file.suffix.lower().lstrip("."))
-    try:
-        file.write_text(text, encoding="utf-8", newline="")
-    except OSError as error:
-        raise BadInput(f"cannot write {file}: {error.strerror or error}") from error
-    except ValueError as error:  # a lone surrogate in a name, a null character in the path
-        raise BadInput(f"cannot write {str(file)!r}: {error}") from None
+    write_text(file, text, force=True)
 
 
 def _parse(text: str, kind: str, calculus: Calculus | str | None, file: str) -> NetworkFile:
@@ -183,9 +180,12 @@ def _text_of(file: Path) -> str:
     try:
         raw = file.read_bytes()
     except OSError as error:
-        raise BadInput(f"cannot read {file}: {error.strerror or error}") from error
+        raise BadInput(f"cannot read {shown(file)}: {error.strerror or error}") from error
     except ValueError as error:  # a null character in the path
-        raise BadInput(f"cannot read {str(file)!r}: {error}") from None
+        raise BadInput(f"cannot read {quoted(str(file))}: {error}") from None
+    other = foreign(raw[:4096], "network")
+    if other is not None:
+        raise BadInput(wrong_kind(file, other, "network"))
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -194,20 +194,14 @@ def _text_of(file: Path) -> str:
 
 
 def _kind(file: Path, text: str) -> str:
+    """Return the name of a network's format, by the suffix if it is one, else by the content."""
     suffix = file.suffix.lower().lstrip(".")
-    return suffix if suffix in _MODULES else _recognise(text, str(file))
-
-
-def _recognise(text: str, file: str) -> str:
-    head = text.lstrip()
-    if head.startswith("{"):
-        return "json"
-    first = head.split("\n", 1)[0]
-    if re.match(r"\d+\s*(#|$)", first):
-        return "csp"
-    if "relations" in first.casefold() and re.search("[,;\t]", first):
-        return "csv"
-    raise BadInput(
-        f"{file} is no network file: csp starts with a number, csv with the header a,relations,b,weight,label and json "
-        "with a brace; if it is one of them, name the format"
-    )
+    if suffix in _MODULES:
+        return suffix
+    found = told_by(text[:4096].encode("utf-8", "replace"))
+    if found is None:
+        raise BadInput(
+            f"{file} is no network file: csp starts with a number, csv with the header a,relations,b,weight,label and json "
+            "with a brace; if it is one of them, name the format"
+        )
+    return found.name.removeprefix("network-")

@@ -12,18 +12,20 @@ RFC 7946, The GeoJSON Format, 2016.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._files import shown
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
+from .projection import Projection
 from .source import Source
 
 if TYPE_CHECKING:
@@ -32,9 +34,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["parse_geojson", "read_geojson"]
-
-EARTH_RADIUS = 6_371_008.8
-"""Mean radius, metres (IUGG)."""
 
 LARGEST_METRES = 1e9
 """Planar coordinates beyond this are taken for a mistake: their small digits would be lost."""
@@ -68,7 +67,7 @@ def read_geojson(path: str | PathLike[str]) -> Source:
     except UnicodeDecodeError:
         raise BadInput(f"{file}: not text in UTF-8, so it is no GeoJSON") from None
     except OSError as error:
-        raise BadInput(f"{file}: cannot be read ({error.strerror or error})") from None
+        raise BadInput(f"{shown(file)}: cannot be read ({error.strerror or error})") from None
     return parse_geojson(text, origin=file.name)
 
 
@@ -79,7 +78,7 @@ def parse_geojson(text: str, *, origin: str = "GeoJSON") -> Source:
     --------
     >>> from ninefold.io.sources.geojson import parse_geojson
     >>> parse_geojson('{"type": "LineString", "coordinates": [[24.94, 60.17], [24.95, 60.17]]}')
-    Source(GeoJSON: 2 vertices, 1 edges)
+    Source(GeoJSON: 2 vertices, 1 edge)
     """
     try:
         document = json.loads(text)
@@ -97,8 +96,8 @@ def parse_geojson(text: str, *, origin: str = "GeoJSON") -> Source:
         left = f" ({found.left_out()})" if found.ignored else ""
         raise BadInput(f"{origin}: there is no LineString or MultiLineString in it{left}")
     notes = _notes_on_ignored(found)
-    ways, marks = _project(found, _is_planar(document, origin))
-    return _split(found, ways, marks, notes)
+    ways, marks, projection = _project(found, _is_planar(document, origin))
+    return replace(_split(found, ways, marks, notes), projection=projection)
 
 
 @dataclass(slots=True)
@@ -199,7 +198,7 @@ def _is_planar(document: dict[str, Any], origin: str) -> bool:
     own = document.get("ninefold")
     if isinstance(own, dict) and "units" in own:
         if own["units"] != "m":
-            raise BadInput(f'{origin}: "units" is {str(own["units"])[:40]!r}; only "m" (planar metres) is known')
+            raise BadInput(f'{origin}: "units" is {quoted(own["units"])}; only "m" (planar metres) is known')
         return True
     crs = document.get("crs")
     if isinstance(crs, dict) and isinstance(crs.get("properties"), dict) and isinstance(crs["properties"].get("name"), str):
@@ -210,29 +209,22 @@ def _is_planar(document: dict[str, Any], origin: str) -> bool:
 def _project(
     found: _Found,
     planar: bool,  # noqa: FBT001
-) -> tuple[list[NDArray[np.float64]], list[tuple[str, NDArray[np.float64]]]]:
-    """Return lines and named points in planar metres."""
+) -> tuple[list[NDArray[np.float64]], list[tuple[str, NDArray[np.float64]]], Projection | None]:
+    """Return lines and named points in planar metres, and how they got there from degrees, if they did."""
     everything = np.concatenate([*found.lines, *(at for _, at in found.marks)])
     if planar:
         if (np.abs(everything) > LARGEST_METRES).any():
             raise BadInput(f"{found.origin}: a coordinate lies more than {LARGEST_METRES:g} m from the origin")
-        return found.lines, found.marks
+        return found.lines, found.marks, None
     if (np.abs(everything) > (180.0, 90.0)).any():
         x, y = everything[int(np.flatnonzero((np.abs(everything) > (180.0, 90.0)).any(axis=1))[0])].tolist()
         raise BadInput(
             f"{found.origin}: ({x:g}, {y:g}) is no longitude and latitude; for planar metres add the member "
             '"ninefold": {"units": "m"}'
         )
-    wraps = float(np.ptp(everything[:, 0])) > 180.0  # on both sides of the antimeridian
-    lon = np.where(wraps & (everything[:, 0] < 0), everything[:, 0] + 360.0, everything[:, 0])
-    middle = np.array([(lon.min() + lon.max()) / 2, (everything[:, 1].min() + everything[:, 1].max()) / 2])
-    scale = np.radians(1.0) * EARTH_RADIUS * np.array([math.cos(math.radians(middle[1])), 1.0])
-
-    def metres(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        east = np.where(wraps & (at[:, 0] < 0), at[:, 0] + 360.0, at[:, 0])
-        return np.asarray((np.stack([east, at[:, 1]], axis=1) - middle) * scale + 0.0)
-
-    return [metres(line) for line in found.lines], [(name, metres(at)) for name, at in found.marks]
+    projection = Projection.about(everything)
+    lines = [projection.metres(line) for line in found.lines]
+    return lines, [(name, projection.metres(at)) for name, at in found.marks], projection
 
 
 def _split(

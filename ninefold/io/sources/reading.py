@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ninefold.errors import BadInput
-
+from ..formats import recognise
 from . import samples
 from .geojson import read_geojson
 
 if TYPE_CHECKING:
     from os import PathLike
 
+    from ninefold.mapping import PlaneMap
+
     from .source import Source
 
-__all__ = ["read_source"]
+__all__ = ["map_of_source", "read_source"]
 
 
 def read_source(path: str | PathLike[str]) -> Source:
@@ -35,9 +35,10 @@ def read_source(path: str | PathLike[str]) -> Source:
     text = str(path)
     if text.startswith("sample:"):
         return samples.load(text.removeprefix("sample:"))
-    suffix = Path(text).suffix.lower()
-    if suffix in (".geojson", ".json"):
-        return read_geojson(path)
-    raise BadInput(
-        f"{text}: no source with geometry is known by {suffix or 'no suffix'!r}; give a .geojson file or sample:NAME"
-    )
+    recognise(path, "source")
+    return read_geojson(path)
+
+
+def map_of_source(path: str | PathLike[str]) -> PlaneMap:
+    """Read a source with geometry as a plane map; see `read_source` and `Source.to_map`."""
+    return read_source(path).to_map()

@@ -14,13 +14,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
+from ninefold.immutable import Immutable, freeze, frozen_copy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ninefold.mapping import PlaneMap
     from ninefold.mapping.robot.simulated import SimulatedWorld
+
+    from .projection import Projection
 
 __all__ = ["Crossing", "Source"]
 
@@ -48,8 +52,8 @@ class Crossing:
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
-    """A street network, a floor plan, any set of polylines that meet at vertices. Immutable.
+class Source(Immutable):
+    """A street network, a floor plan, any set of polylines that meet at vertices. Immutable: arrays are copied in.
 
     Attributes
     ----------
@@ -67,6 +71,9 @@ class Source:
         Where it was read from, for messages.
     notes
         What the reader left out or changed, a sentence each.
+    projection
+        From the longitudes and latitudes of the file to `points`, or None where the file was in planar metres. Messages give
+        places in the coordinates of the file.
 
     Examples
     --------
@@ -86,6 +93,20 @@ class Source:
     labels: tuple[str | None, ...]
     origin: str = ""
     notes: tuple[str, ...] = ()
+    projection: Projection | None = None
+
+    def __post_init__(self) -> None:
+        kept: dict[str, Any] = {
+            "points": frozen_copy(np.asarray(self.points, np.float64)),
+            "edges": frozen_copy(np.asarray(self.edges, np.int32)),
+            "paths": tuple(None if path is None else frozen_copy(np.asarray(path, np.float64)) for path in self.paths),
+            "vertex_names": tuple(self.vertex_names),
+            "edge_names": tuple(self.edge_names),
+            "labels": tuple(self.labels),
+            "notes": tuple(self.notes),
+        }
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
 
     @property
     def n_vertices(self) -> int:
@@ -109,7 +130,9 @@ class Source:
 
         lines = [self.polyline(e) for e in range(self.n_edges)]
         rows = np.repeat(np.arange(self.n_edges), [len(line) for line in lines])
-        return np.asarray(shapely.linestrings(np.concatenate(lines), indices=rows)) if lines else np.empty(0, object)
+        shapes = np.asarray(shapely.linestrings(np.concatenate(lines), indices=rows)) if lines else np.empty(0, object)
+        freeze(shapes)
+        return shapes
 
     @property
     def streets(self) -> dict[str, tuple[int, ...]]:
@@ -227,13 +250,18 @@ class Source:
     def _crossing_sentence(self) -> str:
         first = self.crossings[0]
         a, b = (self.edge_names[e] for e in first.edges)
-        where = f"({first.at[0]:.1f}, {first.at[1]:.1f})"
-        what = f"{a!r} meets itself" if a == b else f"{a!r} and {b!r} {'overlap' if first.overlap else 'meet'}"
+        where = f"({first.at[0]:.1f}, {first.at[1]:.1f}) metres"
+        if self.projection is not None:
+            longitude, latitude = self.projection.degrees(first.at)
+            where = f"longitude {longitude:.6f}, latitude {latitude:.6f}"
+        what = f"{quoted(a)} meets itself"
+        if a != b:
+            what = f"{quoted(a)} and {quoted(b)} {'overlap' if first.overlap else 'meet'}"
         count = sum(crossing.places for crossing in self.crossings)
-        return f"edges meet at {count} place{'' if count == 1 else 's'} without a vertex: first, {what} near {where}"
+        return f"edges meet at {counted(count, 'place')} without a vertex: first, {what} near {where}"
 
     def __repr__(self) -> str:
-        return f"Source({self.origin}: {self.n_vertices} vertices, {self.n_edges} edges)"
+        return f"Source({self.origin}: {counted(self.n_vertices, 'vertex', 'vertices')}, {counted(self.n_edges, 'edge')})"
 
 
 def _crossings(source: Source) -> tuple[Crossing, ...]:

@@ -16,22 +16,26 @@ accepted as names; keys not listed here are let pass, and those of the header ar
 from __future__ import annotations
 
 import json
-import os
-import secrets
-from contextlib import contextmanager, suppress
-from errno import EEXIST
+import sys
+from contextlib import contextmanager
 from itertools import pairwise
-from math import degrees, fmod, isfinite, radians
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from ninefold._files import published, shown
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, WalkError
-from ninefold.mapping.heading import TAU, Heading
+from ninefold.mapping.heading import LARGEST_ANGLE, TAU, Heading
 from ninefold.mapping.names import Names
-from ninefold.mapping.robot.walk import Event, HeadingUnit, Samples, Visit, Walk, WalkHeader
+from ninefold.mapping.robot.units import unit_of
+from ninefold.mapping.robot.walk import Event, Samples, Visit, Walk, WalkHeader
+
+from ..formats import foreign, wrong_kind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    import os
+    from collections.abc import Iterator
 
 __all__ = [
     "WALK_VERSION",
@@ -47,17 +51,8 @@ __all__ = [
 WALK_VERSION = 1
 """The version of the format written, and the newest that is read."""
 
-_TO_YAW: dict[HeadingUnit, Callable[[float], float]] = {
-    "yaw-rad": float,
-    "yaw-deg": radians,
-    "bearing-deg": lambda bearing: radians(90.0 - fmod(bearing, 360.0)),
-}
-_FROM_YAW: dict[HeadingUnit, Callable[[float], float]] = {
-    "yaw-rad": float,
-    "yaw-deg": degrees,
-    "bearing-deg": lambda yaw: (90.0 - degrees(yaw)) % 360.0,
-}
 _NUMBER = frozenset((int, float))
+_LARGEST_FLOAT = sys.float_info.max
 _LINE_ENDS = frozenset(("\n", "", "\r\n"))
 
 
@@ -102,7 +97,7 @@ def read_header(path: str | os.PathLike[str]) -> WalkHeader:
 
 
 def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
-    """Write a walk log: whole or not at all, through a temporary file in the same folder.
+    """Write a walk log, whole or not at all; a file that is there is replaced.
 
     Headings are written in the unit that the walk's header names.
 
@@ -111,25 +106,15 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     WalkError
         If the file cannot be written; what was there before stays.
     """
-    target = Path(path)
     header = walk.header
-    temporary = target.parent / f".{target.name}.{secrets.token_hex(4)}.tmp"
     try:
-        if target.exists() and not target.is_file():  # a rename would put a file in the place of /dev/null
-            raise FileExistsError(EEXIST, "there is a folder, a device or a pipe")
-        with temporary.open("x", encoding="utf-8", newline="\n") as file:
+        with published(path, force=True) as temporary, temporary.open("x", encoding="utf-8", newline="\n") as file:
             file.write(_line(header_to_json(header)))
             file.writelines(_line(event_to_json(event, header)) for event in walk.events)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(target)
-    except OSError as error:
-        raise WalkError(f"the walk cannot be written: {error.strerror or error}", where=str(path)) from None
+    except BadInput as error:
+        raise WalkError(str(error)) from None
     except (TypeError, ValueError, RecursionError) as error:
         raise WalkError(f"the walk cannot be written: {error}", where=str(path)) from None
-    finally:
-        with suppress(OSError, ValueError):
-            temporary.unlink(missing_ok=True)
 
 
 def header_to_json(header: WalkHeader) -> dict[str, Any]:
@@ -146,7 +131,7 @@ def header_to_json(header: WalkHeader) -> dict[str, Any]:
 
 def event_to_json(event: Event, header: WalkHeader) -> dict[str, Any]:
     """Return the JSON object of an event, headings in the header's unit."""
-    give = _FROM_YAW[header.heading]
+    give = unit_of(header.heading).from_yaw
     line: dict[str, Any]
     if isinstance(event, Samples):
         line = {"heading": give(event.yaw[0])} if len(event.yaw) == 1 else {"headings": [give(yaw) for yaw in event.yaw]}
@@ -189,7 +174,8 @@ class WalkReader:
         self.line = 0
         self._tolerance = tolerance
         self._header: WalkHeader | None = None
-        self._yaw: Callable[[float], float] = float
+        self._unit = unit_of("yaw-rad")
+        self._yaw = self._unit.to_yaw
         self._closest = 0.0
         self._visits = 0
         self._samples = 0
@@ -242,7 +228,7 @@ class WalkReader:
         except RecursionError:
             self._fail("not JSON that can be read: nested too deeply")
         if type(found) is not dict:
-            self._fail(f"a line holds one JSON object, not {_short(found)}")
+            self._fail(f"a line holds one JSON object, not {quoted(found)}")
         if self._header is None:
             self._begin(self._read_header(found))
             return None
@@ -252,7 +238,7 @@ class WalkReader:
         elif "heading" in found or "headings" in found:
             event = self._heading(found)
         else:
-            keys = ", ".join(map(repr, list(found)[:4])) or "nothing"
+            keys = ", ".join(map(quoted, list(found)[:4])) or "nothing"
             self._fail(f'an event has "place", "heading" or "headings"; this one has {keys}')
         return event
 
@@ -269,7 +255,8 @@ class WalkReader:
         if self._tolerance is not None and self._tolerance != header.tolerance:
             header = WalkHeader(header.heading, header.compass, self._tolerance, header.extra)
         self._header = header
-        self._yaw = _TO_YAW[header.heading]
+        self._unit = unit_of(header.heading)
+        self._yaw = self._unit.to_yaw
         self._closest = header.tolerance
 
     def _read_header(self, found: dict[str, Any]) -> WalkHeader:
@@ -277,14 +264,14 @@ class WalkReader:
             self._fail('the first line is no walk header, such as {"ninefold": "walk", "version": 1, "heading": "yaw-rad"}')
         version = found.get("version")
         if isinstance(version, bool) or not isinstance(version, int) or version < 1:
-            self._fail(f'the header\'s "version" is {WALK_VERSION}, not {_short(version)}')
+            self._fail(f'the header\'s "version" is {WALK_VERSION}, not {quoted(version)}')
         if version > WALK_VERSION:
             self._fail(f"the walk has format version {version}, newer than {WALK_VERSION}; update ninefold to read it")
         if "heading" not in found:
             self._fail('the header lacks "heading": one of "yaw-rad", "yaw-deg", "bearing-deg"')
         for key in ("heading", "compass", "tolerance"):
             if key in found and type(found[key]) in (dict, list):
-                self._fail(f'the header\'s "{key}" cannot be {_short(found[key])}')
+                self._fail(f'the header\'s "{key}" cannot be {quoted(found[key])}')
         extra = {key: value for key, value in found.items() if key not in _HEADER_KEYS}
         given = {key: found[key] for key in ("heading", "compass", "tolerance") if key in found}
         try:
@@ -319,12 +306,12 @@ class WalkReader:
         if "headings" not in found:
             heading = found["heading"]
             if type(heading) not in _NUMBER:
-                self._fail(f'"heading" is a number, not {_short(heading)}')
+                self._fail(f'"heading" is a number, not {quoted(heading)}')
             t = self._time(found) if "t" in found else None
             try:
                 samples = Samples((self._yaw(heading),), t)
             except (OverflowError, ValueError):
-                self._fail('"heading" is not finite')
+                self._fail(f'"heading" is {self._no_angle([heading])}')
             self._samples += 1
             return samples
         if "heading" in found:
@@ -338,15 +325,24 @@ class WalkReader:
 
     def _yaws(self, key: str, numbers: Any) -> tuple[float, ...]:
         if type(numbers) is not list or not _NUMBER.issuperset(map(type, numbers)):
-            self._fail(f'"{key}" is a list of numbers, not {_short(numbers)}')
+            self._fail(f'"{key}" is a list of numbers, not {quoted(numbers)}')
         try:
             yaws = tuple(map(self._yaw, numbers))
-            finite = all(map(isfinite, yaws))
+            angles = all(map(isfinite, yaws)) and (not yaws or max(map(abs, yaws)) <= LARGEST_ANGLE)
         except (OverflowError, ValueError):
-            finite = False
-        if not finite:
-            self._fail(f'"{key}" holds a number that is not finite')
+            angles = False
+        if not angles:
+            self._fail(f'"{key}" holds a number that is {self._no_angle(numbers)}')
         return yaws
+
+    def _no_angle(self, numbers: list[Any]) -> str:
+        """Say of the first number that is no angle why it is none."""
+        for number in numbers:
+            if abs(number) > _LARGEST_FLOAT or not isfinite(number):
+                return "not finite"
+            if abs(self._yaw(number)) > LARGEST_ANGLE:
+                return f"too large for an angle: {number:.6g}, and angles go up to {self._unit.angle(LARGEST_ANGLE)}"
+        raise AssertionError("every number is an angle")
 
     def _check_exits(self, headings: tuple[Heading, ...]) -> None:
         yaws = sorted([heading.yaw for heading in headings])
@@ -355,8 +351,8 @@ class WalkReader:
         for a, b in pairwise([*yaws, yaws[0] + TAU]):
             if b - a <= self._closest:
                 self._fail(
-                    f"two exits, {degrees(a):.4g} and {degrees(b):.4g} deg counter-clockwise from east, are within the "
-                    f"tolerance of {degrees(self._closest):.4g} deg"
+                    f"two exits, {self._unit.heading(a)} and {self._unit.heading(b)}, are within the tolerance of "
+                    f"{self._unit.angle(self._closest)}"
                 )
 
     def _time(self, found: dict[str, Any]) -> float | None:
@@ -364,7 +360,7 @@ class WalkReader:
         if t is None:
             return None
         if type(t) not in _NUMBER:
-            self._fail(f'"t" is a number of seconds, not {_short(t)}')
+            self._fail(f'"t" is a number of seconds, not {quoted(t)}')
         try:
             seconds = float(t)
         except OverflowError:
@@ -382,7 +378,7 @@ class WalkReader:
             if known is not None:
                 return known
         elif type(given) is not int:
-            self._fail(f'"{key}" is a name, not {_short(given)}')
+            self._fail(f'"{key}" is a name, not {quoted(given)}')
         try:
             name = Names(kind, 1, (given,))[0]
             name.encode("utf-8")
@@ -394,7 +390,7 @@ class WalkReader:
         return name
 
     def _fail(self, message: str) -> NoReturn:
-        raise WalkError(message, where=f"{self.name}:{self.line}")
+        raise WalkError(message, where=f"{self.name}, line {self.line}")
 
 
 def _parse(path: str | os.PathLike[str], reader: WalkReader) -> Iterator[Event]:
@@ -412,14 +408,17 @@ def _opened(path: str | os.PathLike[str]) -> Iterator[Iterator[bytes]]:
     """Open a file for its lines; a byte order mark is dropped."""
     try:
         with Path(path).open("rb") as file:
-            if file.read(3) != b"\xef\xbb\xbf":
-                file.seek(0)
+            head = file.read(4096)
+            other = foreign(head, "walk")
+            if other is not None:
+                raise WalkError(wrong_kind(path, other, "walk"))
+            file.seek(3 if head.startswith(b"\xef\xbb\xbf") else 0)
             yield file
     except (OSError, ValueError) as error:
         if isinstance(error, WalkError):
             raise
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise WalkError(f"the walk cannot be read: {reason or error}", where=str(path)) from None
+        raise WalkError(f"the walk cannot be read: {reason or error}", where=shown(path)) from None
 
 
 def _line(record: dict[str, Any]) -> str:
@@ -428,8 +427,3 @@ def _line(record: dict[str, Any]) -> str:
 
 def _reject_constant(name: str) -> NoReturn:
     raise BadInput(f"{name} is no number that a walk can hold; headings are finite")
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

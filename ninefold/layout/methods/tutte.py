@@ -11,18 +11,18 @@ checked, and the Schnyder drawing is given with a note where the check fails.
 References
 ----------
 W. T. Tutte, How to draw a graph, 1963. M. S. Floater, One-to-one piecewise linear mappings over triangulations, 2003.
+P. R. Amestoy, T. A. Davis and I. S. Duff, An approximate minimum degree ordering algorithm, 1996.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ninefold.mapping import _orbits
-from ninefold.mapping.checks import face_permutation, first_darts
+from ninefold.mapping.checks import face_labels, face_permutation, first_darts
 
 from ..drawing import Drawing
 from ..planarity import drawing_problems
@@ -43,6 +43,9 @@ MOST_VERTICES = 100_000
 
 SCAFFOLD_WEIGHT, BRIDGE_WEIGHT = 0.35, 0.3
 """Pull of a scaffolding edge and of a bridge, where an edge of the map pulls with 1: less, and the rest shapes the map."""
+
+LONG_ROW = 10.0
+"""Entries of a row, over the square root of the number of rows, from which it is eliminated last."""
 
 ROUNDS, LIGHTEST, HEAVIEST = 3, 0.1, 10.0
 """Rounds of evening out, and the bounds of an edge's weight in them, relative to its first."""
@@ -69,7 +72,7 @@ def tutte(plane: PlaneMap) -> Drawing:
 
     Notes
     -----
-    Complexity: a sparse factorisation, about O(V^1.5), and the check.
+    Complexity: a few sparse factorisations, about O(V^1.5), and the check, O(V log V), whatever the degrees.
 
     Examples
     --------
@@ -111,8 +114,7 @@ class _Faces:
 
     def __init__(self, simple: SimpleMap) -> None:
         self.next_face = face_permutation(simple.next_ccw)
-        self.of, count = _orbits.face_labels.for_work(simple.tail.size)(self.next_face)
-        self.count = int(count)
+        self.of, self.count = face_labels(self.next_face)
         self.size = np.bincount(self.of, minlength=self.count)
         corners = self.of.astype(np.int64) * simple.n_vertices + simple.tail
         distinct = np.bincount(np.unique(corners) // simple.n_vertices, minlength=self.count)
@@ -179,7 +181,6 @@ def _barycentric(
 ) -> NDArray[np.float64]:
     """Put `rim` clockwise on the unit circle, level edge first, and every other vertex at the mean of its neighbours."""
     from scipy.sparse import coo_array
-    from scipy.sparse.linalg import splu
 
     angle = -np.pi / 2 + np.pi / rim.size - 2 * np.pi * np.arange(rim.size) / rim.size
     xy = np.zeros((n, 2))
@@ -195,6 +196,26 @@ def _barycentric(
     inner = np.flatnonzero(free)
     links = matrix[inner]
     laplacian = (coo_array((degree[inner], (np.arange(inner.size),) * 2)) - links[:, inner]).tocsc()
-    factor = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    xy[inner] = factor.solve(links[:, rim] @ xy[rim])
+    xy[inner] = _solved(laplacian, links[:, rim] @ xy[rim])
     return xy
+
+
+def _solved(matrix: Any, right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve a sparse symmetric system with a dominant diagonal: (n, n) csc and (n, 2).
+
+    The minimum-degree ordering of SuperLU takes a time quadratic in the length of a row, so rows much longer than the rest
+    are kept out of it and eliminated last, as AMD does (Amestoy, Davis and Duff 1996).
+    """
+    from scipy.sparse.linalg import splu
+
+    factor = partial(splu, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    length = np.diff(matrix.indptr)
+    long = length > LONG_ROW * np.sqrt(length.size)
+    if not long.any():
+        return np.asarray(factor(matrix, permc_spec="MMD_AT_PLUS_A").solve(right))
+    rest = np.flatnonzero(~long)
+    place = factor(matrix[rest][:, rest], permc_spec="MMD_AT_PLUS_A").perm_c if rest.size else rest
+    order = np.concatenate([rest[np.argsort(place)], np.flatnonzero(long)])
+    solution = np.empty_like(right)
+    solution[order] = factor(matrix[order][:, order].tocsc(), permc_spec="NATURAL").solve(right[order])
+    return solution

@@ -7,9 +7,10 @@ raised without saying at which event; that is the mapper's to add.
 from __future__ import annotations
 
 from itertools import pairwise
-from math import degrees, pi, remainder
+from math import pi, remainder
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted, quoted, shortened
 from ninefold.errors import AmbiguousDart, NotPlane, WalkError
 
 from ..heading import TAU, wrap
@@ -17,16 +18,24 @@ from ..names import Names
 from ..plane import PlaneMap
 from ._growing import GrowingMap, whole_turns
 from ._star import NONE, OPEN, TIE, Star
-from .legs import show_angle, show_yaw
+from .legs import DEGREES
+from .walk import LARGEST_TOLERANCE
 
 if TYPE_CHECKING:
     from ..heading import Heading
     from .legs import Leg
+    from .units import Unit
 
 __all__ = ["Memory"]
 
 FARTHEST_MISS = pi / 2
 """Radians by which mean headings may drift from the first pass of an edge before its turning is in doubt."""
+
+THINNEST = 3
+"""Times the tolerance up to which two edges that join the same places are doubted to be two."""
+
+FARTHEST_NOISE = 10
+"""Times the tolerance up to which a miss is taken for noise, in messages alone."""
 
 
 class Memory:
@@ -40,12 +49,15 @@ class Memory:
         Of edges, in the order first travelled: name, row by name, number of times travelled.
     grown
         The plane map of all that.
+    tolerance, unit
+        Radians within which two headings are the same direction; how messages write headings.
     """
 
-    __slots__ = ("edge_names", "edge_rows", "grown", "names", "passes", "rows", "stars", "tolerance")
+    __slots__ = ("edge_names", "edge_rows", "grown", "names", "passes", "rows", "stars", "tolerance", "unit")
 
-    def __init__(self, tolerance: float) -> None:
+    def __init__(self, tolerance: float, unit: Unit = DEGREES) -> None:
         self.tolerance = tolerance
+        self.unit = unit
         self.names: list[str] = []
         self.rows: dict[str, int] = {}
         self.stars: list[Star] = []
@@ -56,7 +68,7 @@ class Memory:
 
     def fork(self) -> Memory:
         """Return a memory that knows the same and goes its own way from here. O(V + E)."""
-        other = Memory(self.tolerance)
+        other = Memory(self.tolerance, self.unit)
         other.names = self.names.copy()
         other.rows = self.rows.copy()
         other.stars = [star.fork() for star in self.stars]
@@ -82,28 +94,32 @@ class Memory:
         star = self.stars[v] if v is not None else Star()
         if exits is None:
             return star
-        tolerance = self.tolerance
+        tolerance, show = self.tolerance, self.unit.heading
         yaws = sorted([heading.yaw for heading in exits])
         for a, b in pairwise([*yaws, yaws[0] + TAU] if len(yaws) > 1 else []):
             if b - a <= tolerance:
-                raise AmbiguousDart(f"two exits of {place!r}, {show_yaw(a)} and {show_yaw(b)}, are within the tolerance")
+                raise AmbiguousDart(
+                    f"two exits of {quoted(place)}, {show(a)} and {show(b)}, are within the tolerance of "
+                    f"{self.unit.angle(tolerance)}"
+                )
         if star.declared:
             if star.agrees(yaws, tolerance):
                 return star
             if len(yaws) != len(star.yaws):
                 raise WalkError(
-                    f"place {place!r} was seen with {_exits(len(star.yaws))} and now with {len(yaws)}: "
-                    "two places with one name?"
+                    f"place {quoted(place)} was seen with {counted(len(star.yaws), 'exit')} and now with {len(yaws)}: "
+                    f"two places with one name? Exits seen before: {self._list(star.yaws)}; now: {self._list(yaws)}"
                 )
             raise WalkError(
-                f"place {place!r} was seen with exits at {_list(star.yaws)} and now at {_list(yaws)}: "
-                "two places with one name?"
+                f"place {quoted(place)} was seen with exits at {self._list(star.yaws)} and now at {self._list(yaws)}: "
+                f"two places with one name?{self._noise(star.farthest(yaws), 'they differ by at most')}"
             )
         found = star.with_exits(yaws, tolerance)
         if isinstance(found, int):
+            miss = min((abs(remainder(yaw - star.yaws[found], TAU)) for yaw in yaws), default=pi)
             raise WalkError(
-                f"the exits of {place!r}, {_list(yaws)}, do not show edge {self._edge(star.darts[found])!r} at "
-                f"{show_yaw(star.yaws[found])}: two places with one name?"
+                f"the exits of {quoted(place)}, {self._list(yaws)}, do not show edge {self._edge(star.darts[found])} at "
+                f"{show(star.yaws[found])}: two places with one name?{self._noise(miss, 'the nearest exit is only')}"
             )
         return found
 
@@ -138,9 +154,9 @@ class Memory:
         b = star.darts[j] if j >= 0 else OPEN
         if d >= 0 or b >= 0:
             self._check_known(u, place, v, leg, d, b)
-            if name is not None and name != self._edge(d):
+            if name is not None and name != self.edge_names[d >> 1]:
                 raise WalkError(
-                    f"the edge known as {self._edge(d)!r} is now called {name!r}; name an edge at its first traversal"
+                    f"the edge known as {self._edge(d)} is now called {quoted(name)}; name an edge at its first traversal"
                 )
             return d
         for at, index, yaw, end, verb in (
@@ -148,11 +164,15 @@ class Memory:
             (star, j, leg.back, place, "reaches"),
         ):
             if index == NONE and at.declared:
-                raise WalkError(f"the leg {verb} {end!r} at {show_yaw(yaw)}, along none of its {_exits(len(at.yaws))}")
+                raise WalkError(
+                    f"the leg {verb} {quoted(end)} at {self.unit.heading(yaw)}, along none of its "
+                    f"{counted(len(at.yaws), 'exit')}; exits seen: {self._list(at.yaws)}"
+                    f"{self._near_miss(at, yaw, end, verb)}"
+                )
         if u == v and abs(remainder(leg.out - leg.back, TAU)) <= 2 * self.tolerance:
             raise AmbiguousDart(
-                f"the leg leaves {place!r} and comes back along one direction, {show_yaw(leg.out)}: a robot that turned "
-                "round, or a loop whose ends cannot be told apart"
+                f"the leg leaves {quoted(place)} and comes back along one direction, {self.unit.heading(leg.out)}: a robot "
+                "that turned round, or a loop whose ends cannot be told apart"
             )
         return OPEN
 
@@ -191,7 +211,7 @@ class Memory:
             try:
                 e = grown.close(u, at_u, v, at_v, *leg)
             except NotPlane as error:
-                raise self._explained(error, u, v, at_u, at_v, name) from None
+                raise self._explained(error, u, v, at_u, at_v, name, leg) from None
         self.settle(place, star)
         for at, yaw, dart in ((origin, leg.out, 2 * e), (star, leg.back, 2 * e + 1)):
             at.put(at.find(yaw, self.tolerance), yaw, dart)
@@ -206,43 +226,45 @@ class Memory:
         index = star.find(yaw, self.tolerance)
         if index == TIE:
             near = star.near(yaw, 2 * self.tolerance)[:2]
-            known = " and ".join(f"{self._direction(star.darts[k])} at {show_yaw(star.yaws[k])}" for k in near)
+            known = " and ".join(f"{self._direction(star.darts[k])} at {self.unit.heading(star.yaws[k])}" for k in near)
             raise AmbiguousDart(
-                f"the leg {verb} {place!r} at {show_yaw(yaw)}, too close to {known} to tell whether it is the same: "
-                f"headings match within {degrees(self.tolerance):.3g} deg and differ from twice that"
+                f"the leg {verb} {quoted(place)} at {self.unit.heading(yaw)}, too close to {known} to tell whether it is "
+                f"the same: headings match within {self.unit.angle(self.tolerance)} and differ from twice that"
             )
         return index
 
     def _check_known(self, u: int, place: str, v: int, leg: Leg, d: int, b: int) -> None:
         """Hold a leg, of which at least one end is known as dart `d` or `b`, against its edge."""
-        tail, heading, origin = self.grown.tail, self.grown.heading, self.names[u]
+        tail, heading, origin = self.grown.tail, self.grown.heading, quoted(self.names[u])
+        show, there = self.unit.heading, quoted(place)
         if d < 0:
-            other = f"its other end is at {show_yaw(heading[b ^ 1])}" if tail[b ^ 1] == u else "it has no end"
+            known = tail[b ^ 1] == u
+            other = f"its other end is at {show(heading[b ^ 1])}" if known else "it has no end"
             raise WalkError(
-                f"the leg reaches {place!r} along edge {self._edge(b)!r}, but left {origin!r} at {show_yaw(leg.out)}, "
-                f"where {other}"
+                f"the leg reaches {there} along edge {self._edge(b)}, but left {origin} at {show(leg.out)}, "
+                f"where {other}{self._near_dart(b ^ 1, leg.out, 'leaves') if known else ''}"
             )
         name = self._edge(d)
         if tail[d ^ 1] != v:
             raise WalkError(
-                f"edge {name!r} leaves {origin!r} at {show_yaw(leg.out)} and led to {self.names[tail[d ^ 1]]!r} before, now "
-                f"to {place!r}: two places with one name, or a wrong heading"
+                f"edge {name} leaves {origin} at {show(leg.out)} and led to {quoted(self.names[tail[d ^ 1]])} before, now "
+                f"to {there}: two places with one name, or a wrong heading"
             )
         if b != d ^ 1:
-            end = f", the end of edge {self._edge(b)!r}" if b >= 0 else ""
+            end = f", the end of edge {self._edge(b)}" if b >= 0 else self._near_dart(d ^ 1, leg.back, "reaches")
             raise WalkError(
-                f"edge {name!r} from {origin!r} to {place!r} ended at {show_yaw(heading[d ^ 1])} (looking back) before, "
-                f"and now at {show_yaw(leg.back)}{end}"
+                f"edge {name} from {origin} to {there} ended at {show(heading[d ^ 1])} (looking back) before, "
+                f"and now at {show(leg.back)}{end}"
             )
         before = self.grown.turn[d >> 1] * (-1 if d & 1 else 1)
         if abs(leg.turn - before) > pi:
             raise WalkError(
-                f"edge {name!r} turned by {show_angle(before)} before and now by {show_angle(leg.turn)}: sampled too "
-                "coarsely, or another way"
+                f"edge {name} turned by {self.unit.angle(before)} before and now by {self.unit.angle(leg.turn)}: sampled "
+                "too coarsely, or another way"
             )
         if abs(whole_turns(*self._means(d, leg), before)[1]) > FARTHEST_MISS:
             raise WalkError(
-                f"the headings of edge {name!r} have drifted a quarter turn from its first pass; check the compass"
+                f"the headings of edge {name} have drifted a quarter turn from its first pass; check the compass"
             )
 
     def _means(self, d: int, leg: Leg) -> tuple[float, float]:
@@ -264,27 +286,78 @@ class Memory:
         if known is not None:
             ends = [self.names[v] for v in self.grown.tail[2 * known : 2 * known + 2]]
             raise WalkError(
-                f"edge {given!r} joins {ends[0]!r} and {ends[1]!r}, and the leg from {self.names[u]!r} to {place!r} is "
+                f"edge {quoted(given)} joins {quoted(ends[0])} and {quoted(ends[1])}, and the leg from "
+                f"{quoted(self.names[u])} to {quoted(place)} is "
                 "another one by its headings; give it a name of its own"
             )
         Names("edge", 1, (given,))
         return given
 
+    # -- words ---------------------------------------------------------------------------------------------------------
+
+    def doubles(self) -> list[str]:
+        """Return a sentence on each pair of edges that may be one edge, passed twice with noise above the tolerance.
+
+        They join the same two places and leave both within a few times the tolerance. O(V + E).
+        """
+        found: dict[str, None] = {}
+        tail, heading = self.grown.tail, self.grown.heading
+        for v, star in enumerate(self.stars):
+            darts = [dart for dart in star.darts if dart >= 0]
+            for a, b in pairwise([*darts, darts[0]] if len(darts) > 1 else []):
+                w = tail[a ^ 1]
+                if a >> 1 == b >> 1 or w != tail[b ^ 1] or w <= v:
+                    continue
+                miss = max(abs(remainder(heading[x] - heading[y], TAU)) for x, y in ((a, b), (a ^ 1, b ^ 1)))
+                hint = self._noise(miss, "where they meet them they are at most", " apart")
+                if hint and miss <= THINNEST * self.tolerance:
+                    first, second = sorted((a >> 1, b >> 1))
+                    sentence = (
+                        f"edges {quoted(self.edge_names[first])} and {quoted(self.edge_names[second])} both join "
+                        f"{quoted(self.names[v])} and {quoted(self.names[w])}, and may be one edge{hint}"
+                    )
+                    found[sentence] = None
+        return list(found)
+
+    def _near_miss(self, star: Star, yaw: float, place: str, verb: str) -> str:
+        """Name the direction at a place that a heading misses by little more than the tolerance, if there is one."""
+        if not star.yaws:
+            return ""
+        k = min(range(len(star.yaws)), key=lambda k: abs(remainder(star.yaws[k] - yaw, TAU)))
+        known = "an exit" if star.darts[k] == OPEN else f"known edge {self._edge(star.darts[k])}"
+        miss = abs(remainder(star.yaws[k] - yaw, TAU))
+        return self._noise(miss, f"{known} {verb} {quoted(place)} only", " from this heading")
+
+    def _near_dart(self, dart: int, yaw: float, verb: str) -> str:
+        """Name a known dart that a heading misses by little more than the tolerance, if it does."""
+        known = f"known edge {self._edge(dart)} {verb} {quoted(self.names[self.grown.tail[dart]])} only"
+        return self._noise(abs(remainder(self.grown.heading[dart] - yaw, TAU)), known, " from this heading")
+
+    def _noise(self, miss: float, words: str, more: str = "") -> str:
+        """Say that a miss looks like noise above the tolerance, and what to do; nothing if it is too wide for that."""
+        enough = 1.05 * miss
+        if not self.tolerance < miss <= FARTHEST_NOISE * self.tolerance or enough >= LARGEST_TOLERANCE:
+            return ""
+        return f"; {words} {self.unit.angle(miss)}{more}: raise --tolerance (radians) to {enough:.2g}"
+
+    def _list(self, yaws: list[float]) -> str:
+        return f"{self.unit.headings(yaws)} {self.unit.measure}" if yaws else "none"
+
     def _edge(self, dart: int) -> str:
-        return self.edge_names[dart >> 1]
+        return quoted(self.edge_names[dart >> 1])
 
     def _direction(self, dart: int) -> str:
-        return "an exit" if dart == OPEN else f"edge {self._edge(dart)!r}"
+        return "an exit" if dart == OPEN else f"edge {self._edge(dart)}"
 
-    def _explained(self, error: NotPlane, u: int, v: int, at_u: int, at_v: int, name: str) -> NotPlane:
+    def _explained(self, error: NotPlane, u: int, v: int, at_u: int, at_v: int, name: str, leg: Leg) -> NotPlane:
         """Say which leg could not be drawn, and for a genus show a shortest offending part. O(E) and its search."""
-        what = f"the leg from {self.names[u]!r} to {self.names[v]!r} cannot be drawn: {error}"
+        what = f"the leg from {quoted(self.names[u])} to {quoted(self.names[v])} cannot be drawn: {error}"
         edges: tuple[str, ...] = ()
         if error.genus:
             edges = self._offending_part(u, v, at_u, at_v, name)
-            what += (
-                f", and the map would have genus {error.genus}; a shortest offending part is the edges {', '.join(edges)}"
-            )
+            part = shortened(", ".join(edges), 200)
+            what += f", and the map would have genus {error.genus}; a shortest offending part is the edges {part}"
+        what += self._near_miss(self.stars[u], leg.out, self.names[u], "leaves")
         what += "; a place was taken for another, a heading is wrong, or legs cross"
         return NotPlane(what, genus=error.genus, edges=edges)
 
@@ -298,11 +371,3 @@ class Memory:
         except NotPlane as found:
             return found.edges
         raise AssertionError("faces kept online differ from those of the rotation")
-
-
-def _list(yaws: list[float]) -> str:
-    return ", ".join(f"{degrees(yaw) + 0.0:.4g}" for yaw in yaws) + " deg" if yaws else "none"
-
-
-def _exits(number: int) -> str:
-    return f"{number} exit{'' if number == 1 else 's'}"

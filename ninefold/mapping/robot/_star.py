@@ -111,6 +111,12 @@ class Star:
                 return True
         return False
 
+    def farthest(self, exits: list[float]) -> float:
+        """Return how far ascending exits, as many as here, are from these directions at most, in the best cyclic order."""
+        yaws, n = self.yaws, len(self.yaws)
+        shifts = (0, -1, 1)
+        return min(max(abs(remainder(exits[(k + s) % n] - yaws[k], TAU)) for k in range(n)) for s in shifts) if n else 0.0
+
     def with_exits(self, exits: list[float], tolerance: float) -> Star | int:
         """Return a declared star: the darts known so far and an open exit for every other one.
 

@@ -6,23 +6,28 @@ places are in doubt reads the same legs and does not.
 
 from __future__ import annotations
 
-from math import degrees, pi, remainder
+from math import pi, remainder
 from typing import TYPE_CHECKING, NamedTuple
 
-from ninefold.errors import WalkError
+from ninefold.errors import WalkError, located
 
 from ..heading import TAU, wrap
 from ._growing import whole_turns
+from .units import unit_of
 from .walk import Visit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from .units import Unit
     from .walk import Event
 
-__all__ = ["Leg", "LegReader", "read_legs", "show_angle", "show_yaw"]
+__all__ = ["DEGREES", "Leg", "LegReader", "read_legs"]
 
 _HALF_TURN = pi - 1e-9
+
+DEGREES = unit_of("yaw-deg")
+"""What messages speak where no log says otherwise."""
 
 
 class Leg(NamedTuple):
@@ -46,6 +51,11 @@ class Leg(NamedTuple):
 class LegReader:
     """Takes the samples of one leg after another.
 
+    Parameters
+    ----------
+    unit
+        In which messages speak of headings.
+
     Examples
     --------
     >>> reader = LegReader()
@@ -56,9 +66,10 @@ class LegReader:
     (0.0, 1.0, False)
     """
 
-    __slots__ = ("_first", "_last", "_turn")
+    __slots__ = ("_first", "_last", "_turn", "_unit")
 
-    def __init__(self) -> None:
+    def __init__(self, unit: Unit = DEGREES) -> None:
+        self._unit = unit
         self._first: float | None = None
         self._last = 0.0
         self._turn = 0.0
@@ -83,8 +94,9 @@ class LegReader:
         for yaw in yaws:
             change = remainder(yaw - last, TAU)
             if not -_HALF_TURN < change < _HALF_TURN:
+                show = self._unit.heading
                 raise WalkError(
-                    f"successive headings {show_yaw(last)} and {show_yaw(yaw)} differ by half a turn, so the way between "
+                    f"successive headings {show(last)} and {show(yaw)} differ by half a turn, so the way between "
                     "them is unknown; sample more often"
                 )
             turn += change
@@ -118,7 +130,7 @@ class LegReader:
 
     def fork(self) -> LegReader:
         """Return a reader that goes on from here on its own."""
-        other = LegReader()
+        other = LegReader(self._unit)
         other._first, other._last, other._turn = self._first, self._last, self._turn
         return other
 
@@ -157,15 +169,5 @@ def read_legs(events: Iterable[Event]) -> tuple[Leg, ...]:
             else:
                 raise WalkError("a heading before the first place; a walk begins at a place")
         except WalkError as error:
-            raise WalkError(str(error), where=f"event {number}") from None
+            raise located(error, f"event {number}", event=number) from None
     return tuple(legs)
-
-
-def show_yaw(yaw: float) -> str:
-    """Write a yaw for a message."""
-    return show_angle(wrap(yaw))
-
-
-def show_angle(radians: float) -> str:
-    """Write an angle for a message."""
-    return f"{degrees(radians) + 0.0:.4g} deg"

@@ -15,14 +15,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ninefold.errors import AmbiguousDart, BadInput, NotPlane, WalkError
+from ninefold._wording import counted, quoted
+from ninefold.errors import BadInput, WalkError, located
 
 from ..heading import Heading
 from ..plane import PlaneMap
 from ..turning import edge_residual
 from ._memory import Memory
 from ._star import OPEN
-from .legs import Leg, LegReader
+from .legs import DEGREES, Leg, LegReader
+from .units import unit_of
 from .walk import Event, Samples, Visit, Walk, WalkHeader, checked_tolerance
 
 if TYPE_CHECKING:
@@ -78,7 +80,7 @@ class Mapper:
     Parameters
     ----------
     header
-        Of the walk; the tolerance is taken from it.
+        Of the walk; the tolerance is taken from it, and the unit in which messages speak of headings.
     tolerance
         Radians within which two headings at one place are the same dart, instead of the header's.
 
@@ -106,12 +108,13 @@ class Mapper:
     def __init__(self, header: WalkHeader | None = None, *, tolerance: float | None = None) -> None:
         self.header = WalkHeader() if header is None else header
         self.tolerance = self.header.tolerance if tolerance is None else checked_tolerance(tolerance)
-        self._memory = Memory(self.tolerance)
+        self._unit = DEGREES if header is None else unit_of(header.heading)
+        self._memory = Memory(self.tolerance, self._unit)
         self._events = 0
         self._closures: list[Closure] = []
         self._plane: PlaneMap | None = None
         self._at = -1
-        self._leg = LegReader()
+        self._leg = LegReader(self._unit)
 
     # -- what is known so far ------------------------------------------------------------------------------------------
 
@@ -177,14 +180,15 @@ class Mapper:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is unfinished: a leg without end, exits never travelled. O(V + E)."""
+        """What is unfinished or in doubt: a leg without end, exits never travelled, edges that may be one. O(V + E)."""
         found = []
         if self._leg.started:
-            found.append(f"the walk ends on a leg from {self.place!r}, which is left out")
+            found.append(f"the walk ends on a leg from {quoted(self.place)}, which is left out")
         if still_open := len(self.open_exits):
             first = self.open_exits[0]
-            exits = "1 exit was" if still_open == 1 else f"{still_open} exits were"
-            found.append(f"{exits} never travelled, the first at {first[0]!r}, {first[1]}")
+            exits = f"{counted(still_open, 'exit')} {'was' if still_open == 1 else 'were'}"
+            found.append(f"{exits} never travelled, the first at {quoted(first[0])}, {self._unit.heading(first[1].yaw)}")
+        found += self._memory.doubles()
         return tuple(found)
 
     @property
@@ -214,6 +218,7 @@ class Mapper:
     def fork(self) -> Mapper:
         """Return a mapper that knows the same and goes its own way from here. O(V + E)."""
         other = Mapper(self.header, tolerance=self.tolerance)
+        other._unit = self._unit
         other._memory = self._memory.fork()
         other._leg = self._leg.fork()
         other._closures = self._closures.copy()
@@ -221,7 +226,9 @@ class Mapper:
         return other
 
     def __repr__(self) -> str:
-        return f"Mapper({self._events} events, {self.n_vertices} vertices, {self.n_edges} edges, {self.n_faces} faces)"
+        kinds = (("event", None), ("vertex", "vertices"), ("edge", None), ("face", None))
+        numbers = (self._events, self.n_vertices, self.n_edges, self.n_faces)
+        return f"Mapper({', '.join(counted(n, one, many) for n, (one, many) in zip(numbers, kinds, strict=True))})"
 
     # -- events --------------------------------------------------------------------------------------------------------
 
@@ -247,9 +254,9 @@ class Mapper:
             elif isinstance(event, Visit):
                 self._visit(event)
             else:
-                raise WalkError(f"an event is a Visit or Samples, not {event!r}")
+                raise WalkError(f"an event is a Visit or Samples, not {quoted(event)}")
         except BadInput as error:
-            raise _at_event(error, self._events + 1) from None
+            raise located(error, f"event {self._events + 1}", event=self._events + 1) from None
         self._events += 1
 
     def _sample(self, yaws: tuple[float, ...]) -> None:
@@ -266,7 +273,7 @@ class Mapper:
             )
         if self._at < 0:
             if event.edge is not None:
-                raise WalkError(f"edge {event.edge!r} is named at the first place, before any leg")
+                raise WalkError(f"edge {quoted(event.edge)} is named at the first place, before any leg")
             self._at = memory.settle(place, memory.look(place, event.exits))
             return
         leg = self._leg_to(place)
@@ -287,15 +294,5 @@ class Mapper:
 
     def _leg_to(self, place: str) -> Leg:
         if not self._leg.started:
-            raise WalkError(f"no heading between {self.place!r} and {place!r}; a leg has at least one sample")
+            raise WalkError(f"no heading between {quoted(self.place)} and {quoted(place)}; a leg has at least one sample")
         return self._leg.read()
-
-
-def _at_event(error: BadInput, event: int) -> BadInput:
-    """Return the same error, saying at which event."""
-    where = f"event {event}"
-    if isinstance(error, NotPlane):
-        return NotPlane(f"{where}: {error}", genus=error.genus, edges=error.edges)
-    if isinstance(error, AmbiguousDart):
-        return AmbiguousDart(f"{where}: {error}")
-    return WalkError(str(error), where=where)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from .. import geometry
@@ -232,9 +233,9 @@ def explore(
     Samples(yaw=(0.0, 0.0, 0.0, 0.0), t=None)
     """
     if not (isinstance(step, int | float) and 0 < step < float("inf")):
-        raise BadInput(f"step is a positive number of metres, not {step!r}")
+        raise BadInput(f"step is a positive number of metres, not {quoted(step)}")
     if not (isinstance(noise, int | float) and 0 <= noise < float("inf")):
-        raise BadInput(f"noise is a standard deviation in radians, not {noise!r}")
+        raise BadInput(f"noise is a standard deviation in radians, not {quoted(noise)}")
     if (most := world.metres / step) > _MOST_SAMPLES:
         raise BadInput(
             f"a step of {step:g} m takes {most:.2g} samples over {world.metres:.3g} m of ways; take a longer step"

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
+from ninefold._wording import quoted
 from ninefold.errors import WalkError
 
-from ..heading import Heading
+from ..heading import LARGEST_ANGLE, Heading, too_large_an_angle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,7 +38,9 @@ def checked_tolerance(value: float) -> float:
         Unless 0 < value < pi / 4.
     """
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < LARGEST_TOLERANCE:
-        raise WalkError(f"a tolerance is an angle in radians between 0 and pi/4, such as {DEFAULT_TOLERANCE}, not {value!r}")
+        raise WalkError(
+            f"a tolerance is an angle in radians between 0 and pi/4, such as {DEFAULT_TOLERANCE}, not {quoted(value)}"
+        )
     return float(value)
 
 
@@ -71,9 +74,9 @@ class WalkHeader:
     def __post_init__(self) -> None:
         if self.heading not in get_args(HeadingUnit):
             known = ", ".join(map(repr, get_args(HeadingUnit)))
-            raise WalkError(f'the header\'s "heading" is one of {known}, not {self.heading!r}')
+            raise WalkError(f'the header\'s "heading" is one of {known}, not {quoted(self.heading)}')
         if not isinstance(self.compass, bool):
-            raise WalkError(f'the header\'s "compass" is true or false, not {self.compass!r}')
+            raise WalkError(f'the header\'s "compass" is true or false, not {quoted(self.compass)}')
         object.__setattr__(self, "tolerance", checked_tolerance(self.tolerance))
         object.__setattr__(self, "extra", MappingProxyType(dict(self.extra)))
 
@@ -114,7 +117,7 @@ class Visit:
                 object.__setattr__(self, "exits", tuple(self.exits))
             for heading in self.exits:
                 if type(heading) is not Heading:
-                    raise WalkError(f"an exit is a Heading, such as Heading.from_degrees(90), not {heading!r}")
+                    raise WalkError(f"an exit is a Heading, such as Heading.from_degrees(90), not {quoted(heading)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +151,8 @@ class Samples:
             finite = False
         if not finite:
             raise WalkError("samples are finite numbers, in radians")
+        if max(self.yaw) > LARGEST_ANGLE or min(self.yaw) < -LARGEST_ANGLE:
+            raise WalkError(f"a sample of {too_large_an_angle(max(self.yaw, key=abs))}")
 
     @classmethod
     def of(cls, *headings: Heading, t: float | None = None) -> Samples:
@@ -193,5 +198,5 @@ class Walk:
 
 def _label(kind: str, label: object) -> str:
     if isinstance(label, bool) or not isinstance(label, str | int):
-        raise WalkError(f"the name of {kind} is a string, not {label!r}")
+        raise WalkError(f"the name of {kind} is a string, not {quoted(label)}")
     return str(label)

@@ -22,6 +22,7 @@ from .columns import (
     CLAUSE_TROUBLE,
     DEPTH,
     EDGE,
+    FULL,
     HELD,
     LABEL,
     LITERALS,
@@ -39,7 +40,7 @@ from .columns import (
 )
 from .explain import explain, explain_triangle_conflict, made_true_at
 
-__all__ = ["analyse", "minimise", "require"]
+__all__ = ["analyse", "conflict_premises", "minimise", "require", "rest_of_clause"]
 
 _LONGEST_PROOF = 60
 """Premises looked at in the attempt to drop one."""
@@ -66,30 +67,28 @@ def require(edges, marks, trail, held, reg, edge, mask, start):  # type: ignore[
 
 
 @kernel(_nrt=False)
-def conflict_premises(dom, edges, marks, reg, arena, place, converse, compose, full, out):  # type: ignore[no-untyped-def]
-    """Write the premises of the conflict noted in the registers; return their number."""
+def conflict_premises(s):  # type: ignore[no-untyped-def]
+    """Write the premises of the conflict noted in the registers to `State.out`; return their number."""
+    reg, arena, out = s.reg, s.arena, s.out
     if reg[TROUBLE] == CLAUSE_TROUBLE:
-        at = place[reg[TROUBLE_A]] + LITERALS
+        at = s.place[reg[TROUBLE_A]] + LITERALS
         n = 0
         for k in range(at, at + 2 * arena[at - LITERALS + SIZE], 2):
             out[n, 0] = arena[k]
-            out[n, 1] = full ^ arena[k + 1]
+            out[n, 1] = reg[FULL] ^ arena[k + 1]
             n += 1
         return n
-    return explain_triangle_conflict(
-        dom, edges, marks, converse, compose, full, reg[TROUBLE_A], reg[TROUBLE_F], reg[TROUBLE_G], out
-    )
+    return explain_triangle_conflict(s, reg[TROUBLE_A], reg[TROUBLE_F], reg[TROUBLE_G])
 
 
 @kernel(_nrt=False)
-def analyse(  # type: ignore[no-untyped-def]
-    dom, edges, marks, trail, levels, reg, arena, place, converse, compose, full, activity, recent, held, out, learnt
-):
+def analyse(s):  # type: ignore[no-untyped-def]
     """Write the clause of the first unique implication point to `learnt`, that literal first; return its length.
 
     Activities of stated pairs that had a part in it are raised by ``activity[-1]``.
     """
-    n = conflict_premises(dom, edges, marks, reg, arena, place, converse, compose, full, out)
+    edges, marks, trail, reg, held, out = s.edges, s.marks, s.trail, s.reg, s.held, s.out
+    n = conflict_premises(s)
     reg[N_HELD] = 0
     # the youngest premise, nearly always of the present level, tells where the conflict belongs
     youngest = -1
@@ -97,7 +96,7 @@ def analyse(  # type: ignore[no-untyped-def]
         youngest = max(youngest, made_true_at(edges, trail, out[k, 0], out[k, 1]))
     if youngest < 0:
         return 0
-    start = levels[trail[youngest, DEPTH], 0]
+    start = s.levels[trail[youngest, DEPTH], 0]
     young = 0
     for k in range(n):
         young += require(edges, marks, trail, held, reg, out[k, 0], out[k, 1], start)
@@ -110,16 +109,16 @@ def analyse(  # type: ignore[no-untyped-def]
             wanted = marks[edge, NEED]
             marks[edge, NEED] = -1
             young -= 1
-            n = explain(edges, marks, trail, arena, place, converse, compose, full, t, wanted, out)
+            n = explain(s, t, wanted)
             for k in range(n):
                 young += require(edges, marks, trail, held, reg, out[k, 0], out[k, 1], start)
         t -= 1
-    learnt[0, 0] = trail[t, EDGE]
-    return 1 + _rest_of_clause(marks, reg, activity, recent, held, learnt)
+    s.learnt[0, 0] = trail[t, EDGE]
+    return 1 + rest_of_clause(marks, reg, s.activity, s.recent, held, s.learnt)
 
 
 @kernel(_nrt=False)
-def _rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore[no-untyped-def]
+def rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore[no-untyped-def]
     """List the pairs held, after the first; raise the activity of stated pairs, held or met on the way."""
     n = 0
     first = learnt[0, 0]
@@ -139,8 +138,9 @@ def _rest_of_clause(marks, reg, activity, recent, held, learnt):  # type: ignore
 
 
 @kernel(_nrt=False)
-def _is_implied(edges, marks, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack):  # type: ignore[no-untyped-def]
+def _is_implied(s, mark, edge):  # type: ignore[no-untyped-def]
     """Tell whether the premise held on `edge` follows from the others held (or from level 0)."""
+    edges, marks, trail, out, stack = s.edges, s.marks, s.trail, s.out, s.stack
     stack[0, 0] = edge
     stack[0, 1] = marks[edge, NEED]
     n_stack = 1
@@ -150,7 +150,7 @@ def _is_implied(edges, marks, trail, arena, place, converse, compose, full, stam
         t = made_true_at(edges, trail, stack[n_stack, 0], stack[n_stack, 1])
         if trail[t, WHY] == -1:  # a decision
             return False
-        n = explain(edges, marks, trail, arena, place, converse, compose, full, t, stack[n_stack, 1], out)
+        n = explain(s, t, stack[n_stack, 1])
         looked += n
         if looked > _LONGEST_PROOF:
             return False
@@ -161,7 +161,7 @@ def _is_implied(edges, marks, trail, arena, place, converse, compose, full, stam
             at = made_true_at(edges, trail, other, mask)
             if at < 0:
                 continue
-            if stamp[trail[at, DEPTH]] != mark:  # no premise held at that level: it cannot follow
+            if s.stamp[trail[at, DEPTH]] != mark:  # no premise held at that level: it cannot follow
                 return False
             stack[n_stack, 0] = other
             stack[n_stack, 1] = mask
@@ -170,31 +170,28 @@ def _is_implied(edges, marks, trail, arena, place, converse, compose, full, stam
 
 
 @kernel(_nrt=False)
-def minimise(  # type: ignore[no-untyped-def]
-    edges, marks, trail, arena, place, converse, compose, full, stamp, mark, n_literals, out, stack, learnt
-):
+def minimise(s, mark, n_literals):  # type: ignore[no-untyped-def]
     """Drop premises that follow from the others, turn the rest into literals, second youngest level second.
 
     Parameters
     ----------
-    stamp, mark
-        (levels,) scratch: ``stamp[l] == mark`` is made to say that level l has a premise.
+    mark
+        A number not used before: ``State.stamp[l] == mark`` is made to say that level l has a premise.
     n_literals
-        Rows of `learnt` in use; their pairs hold their premises in NEED.
+        Rows of ``State.learnt`` in use; their pairs hold their premises in NEED.
 
     Returns
     -------
     n_literals, level, lbd
         Literals left, the level to jump back to, and the number of levels among the literals.
     """
+    marks, trail, stamp, learnt = s.marks, s.trail, s.stamp, s.learnt
     for k in range(n_literals):
         stamp[trail[marks[learnt[k, 0], AT], DEPTH]] = mark
     kept = 1
     for k in range(1, n_literals):
         edge = learnt[k, 0]
-        if trail[marks[edge, AT], WHY] != -1 and _is_implied(
-            edges, marks, trail, arena, place, converse, compose, full, stamp, mark, edge, out, stack
-        ):
+        if trail[marks[edge, AT], WHY] != -1 and _is_implied(s, mark, edge):
             marks[edge, NEED] = -1
         else:
             learnt[kept, 0] = edge

@@ -23,6 +23,7 @@ from .columns import (
     BLOCK_MASK,
     CLAUSE,
     CLAUSE_TROUBLE,
+    FULL,
     HEAD,
     LBD,
     LITERALS,
@@ -42,25 +43,27 @@ __all__ = ["add_clause", "attach", "visit_watches"]
 
 
 @kernel(_nrt=False)
-def attach(edges, arena, place, watch, clause):  # type: ignore[no-untyped-def]
+def attach(s, clause):  # type: ignore[no-untyped-def]
     """Watch the first two literals of a clause, each blocked by the other."""
-    at = place[clause] + LITERALS
-    for s in range(2):
-        node = 2 * clause + s
-        edge = arena[at + 2 * s]
-        watch[node, MASK] = arena[at + 2 * s + 1]
-        watch[node, BLOCK_EDGE] = arena[at + 2 - 2 * s]
-        watch[node, BLOCK_MASK] = arena[at + 3 - 2 * s]
+    edges, arena, watch = s.edges, s.arena, s.watch
+    at = s.place[clause] + LITERALS
+    for side in range(2):
+        node = 2 * clause + side
+        edge = arena[at + 2 * side]
+        watch[node, MASK] = arena[at + 2 * side + 1]
+        watch[node, BLOCK_EDGE] = arena[at + 2 - 2 * side]
+        watch[node, BLOCK_MASK] = arena[at + 3 - 2 * side]
         watch[node, NEXT] = edges[edge, WATCH]
         edges[edge, WATCH] = node
 
 
 @kernel(_nrt=False)
-def add_clause(edges, arena, place, watch, reg, learnt, n_literals, lbd):  # type: ignore[no-untyped-def]
+def add_clause(s, n_literals, lbd):  # type: ignore[no-untyped-def]
     """Store the clause of the first rows of `learnt` (at least two), watch it, and return its number."""
+    arena, reg, learnt = s.arena, s.reg, s.learnt
     clause = reg[N_CLAUSES]
     at = reg[ARENA_TOP]
-    place[clause] = at
+    s.place[clause] = at
     arena[at + SIZE] = n_literals
     arena[at + LBD] = lbd
     for k in range(n_literals):
@@ -68,15 +71,15 @@ def add_clause(edges, arena, place, watch, reg, learnt, n_literals, lbd):  # typ
         arena[at + LITERALS + 2 * k + 1] = learnt[k, 1]
     reg[ARENA_TOP] = at + LITERALS + 2 * n_literals
     reg[N_CLAUSES] = clause + 1
-    attach(edges, arena, place, watch, clause)
+    attach(s, clause)
     return clause
 
 
 @kernel(_nrt=False)
-def visit_watches(  # type: ignore[no-untyped-def]
-    dom, edges, nodes, planes, active, trail, reg, converse, size, arena, place, watch, full, edge
-):
+def visit_watches(s, edge):  # type: ignore[no-untyped-def]
     """Visit the clauses that watch a narrowed pair; narrow what is left alone, return False at a false clause."""
+    dom, edges, reg, arena, watch = s.dom, s.edges, s.reg, s.arena, s.watch
+    full = reg[FULL]
     relation = dom[2 * edge]
     before = -1
     node = edges[edge, WATCH]
@@ -88,7 +91,7 @@ def visit_watches(  # type: ignore[no-untyped-def]
             before, node = node, after
             continue
         clause = node >> 1
-        at = place[clause] + LITERALS
+        at = s.place[clause] + LITERALS
         mine = at + 2 * (node & 1)
         partner = at + 2 - 2 * (node & 1)
         other, mask = arena[partner], arena[partner + 1]
@@ -118,10 +121,7 @@ def visit_watches(  # type: ignore[no-untyped-def]
             reg[TROUBLE] = CLAUSE_TROUBLE
             reg[TROUBLE_A] = clause
             return False
-        narrow(
-            dom, edges, nodes, planes, active, trail, reg, converse, size,
-            2 * other, edges[other, TAIL], edges[other, HEAD], left, CLAUSE, clause, True,
-        )  # fmt: skip
+        narrow(s, 2 * other, edges[other, TAIL], edges[other, HEAD], left, CLAUSE, clause, True)
         before, node = node, after
     return True
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import columns as c
-from .clauses import attach
-from .search import close, search, state_labels
-from .state import new_state
+from .search import close, search
+from .state import new_state, state_labels, watch_again
+from .words import n_words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,6 +23,10 @@ __all__ = ["Engine"]
 _PLAIN_SLICE = 1_000
 _FIRST_SLICE = 20_000
 _SLICE_SECONDS = 0.05
+_TICK_STEPS = 7
+"""Elementary steps for one of the register TICKS."""
+_CONFLICT_STEPS = 7_000
+"""For each node: several times what a conflict takes, as a search that comes to a few conflicts comes to many more."""
 _KEEP_LBD = 2
 _REDUCE_FIRST, _REDUCE_STEP = 2000, 500
 
@@ -61,11 +65,14 @@ class Engine:
         self.frame = frame
         self._log = log
         self._slice = _FIRST_SLICE
+        # what closing the stated labels will take at the least
+        self._expected = 3 * len(arcs) * _TICK_STEPS * (8 + 2 * n_words(frame.n - frame.core))
+        self._counted = 0
         self._reductions = 0
         self.compiling = 0.0
         self.state = new_state(tables, frame, arcs, masks, rng=np.random.default_rng(seed), logging=log is not None)
         self.state.reg[c.REDUCE_AT] = _REDUCE_FIRST
-        self._form(state_labels)(self.state, arcs, np.asarray(masks, dtype=np.int16))
+        state_labels(self.state, arcs, np.asarray(masks, dtype=np.int16))
 
     @property
     def conflicts(self) -> int:
@@ -80,6 +87,14 @@ class Engine:
     def relations(self) -> NDArray[np.int16]:
         """Return the (2E,) relations of the arcs as they are now (a view)."""
         return self.state.dom
+
+    def labels(self) -> NDArray[Any]:
+        """Return the relations of all pairs of a dense frame as they are now, an (n, n) array of masks."""
+        n = self.frame.n
+        labels = np.full((n, n), self.tables.identity, dtype=np.int16)
+        tail, head = self.frame.ends()
+        labels[tail, head], labels[head, tail] = self.state.dom[::2], self.state.dom[1::2]
+        return labels
 
     def close(self, deadline: float | None = None) -> bool | None:
         """Close the stated network; return False if it is inconsistent, None past the deadline, else True.
@@ -100,8 +115,12 @@ class Engine:
         return None if status is None else bool(status == c.CONSISTENT)
 
     def _form(self, kernel: Any) -> Any:
-        """Run plain while the whole search is smaller than importing numba, compiled from then on."""
-        return kernel.for_work(10 * int(self.state.reg[c.TICKS]) + self.frame.n_edges)
+        """Run plain while the work is small, compiled from the slice on that is known to be worth it."""
+        reg = self.state.reg
+        done = _TICK_STEPS * int(reg[c.TICKS]) + _CONFLICT_STEPS * self.frame.n * int(reg[c.CONFLICTS])
+        new = max(done, self._expected) - self._counted
+        self._counted += new
+        return kernel.for_work(new)
 
     def _run(self, kernel: Any, deadline: float | None) -> int | None:
         reg = self.state.reg
@@ -181,9 +200,6 @@ class Engine:
         s.arena[: len(source)] = s.arena[source]
         s.place[: len(kept)] = stop - length
         reg[c.N_CLAUSES], reg[c.ARENA_TOP] = len(kept), len(source)
-        s.edges[:, c.WATCH] = -1
-        rewatch = self._form(attach)
-        for clause in range(len(kept)):
-            rewatch(s.edges, s.arena, s.place, s.watch, clause)
+        watch_again(s)
         self._reductions += 1
         reg[c.REDUCE_AT] = reg[c.CONFLICTS] + _REDUCE_FIRST + _REDUCE_STEP * self._reductions

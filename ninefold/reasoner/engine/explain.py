@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from ninefold._kernels import kernel
 
-from .columns import EDGE, LAST, LITERALS, NEW, OLD, OTHER, PREV, ROOT, SIZE, WHY
+from .columns import EDGE, FULL, LAST, LITERALS, NEW, OLD, OTHER, PREV, ROOT, SIZE, WHY
 from .tables import compose_masks
 
 __all__ = ["explain", "explain_triangle_conflict", "made_true_at", "relation_before"]
@@ -82,11 +82,14 @@ def weaken_pair(converse, compose, full, first, second, swap, bad):  # type: ign
 
 
 @kernel(_nrt=False)
-def explain(edges, marks, trail, arena, place, converse, compose, full, t, wanted, out):  # type: ignore[no-untyped-def]
+def explain(s, t, wanted):  # type: ignore[no-untyped-def]
     """Write premises, true before entry `t`, from which its reason makes its pair lie in `wanted`; return their number.
 
-    The entry must not be a decision. `out` needs a row for each literal of a clause, and three for a triangle.
+    The entry must not be a decision. Premises go to `State.out`, which needs a row for each literal of a clause, and three
+    for a triangle.
     """
+    edges, marks, trail, arena, converse, compose, out = s.edges, s.marks, s.trail, s.arena, s.converse, s.compose, s.out
+    full = s.reg[FULL]
     edge = trail[t, EDGE]
     bad = marks[edge, ROOT] & ~wanted
     n = 0
@@ -105,7 +108,7 @@ def explain(edges, marks, trail, arena, place, converse, compose, full, t, wante
         if left:
             left = left & compose_masks(compose, p, q)
     else:
-        at = place[g] + LITERALS
+        at = s.place[g] + LITERALS
         left = bad
         for k in range(at, at + 2 * arena[at - LITERALS + SIZE], 2):
             if arena[k] == edge:
@@ -118,11 +121,13 @@ def explain(edges, marks, trail, arena, place, converse, compose, full, t, wante
 
 
 @kernel(_nrt=False)
-def explain_triangle_conflict(dom, edges, marks, converse, compose, full, e, f, g, out):  # type: ignore[no-untyped-def]
-    """Write premises on arcs e, f, g with ``e`` and ``f;g`` disjoint; return their number.
+def explain_triangle_conflict(s, e, f, g):  # type: ignore[no-untyped-def]
+    """Write premises on arcs e, f, g with ``e`` and ``f;g`` disjoint to `State.out`; return their number.
 
     The pair changed last is enlarged first, in the hope that it then lies further down the trail.
     """
+    dom, edges, marks, converse, compose, out = s.dom, s.edges, s.marks, s.converse, s.compose, s.out
+    full = s.reg[FULL]
     p, q = dom[f], dom[g]
     bad = dom[e]
     le, lf, lg = edges[e >> 1, LAST], edges[f >> 1, LAST], edges[g >> 1, LAST]

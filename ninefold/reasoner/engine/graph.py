@@ -136,7 +136,7 @@ def triangulated_frame(n: int, i: NDArray[Any], j: NDArray[Any], *, most: int) -
     degree = np.bincount(np.concatenate([i, j]), minlength=n).astype(np.int32)
     order = np.full(n, -1, dtype=np.int32)
     links = np.empty((2 * n + 1, 2), dtype=np.int32)
-    core, _ = eliminate.for_work(len(i) * 20)(rows, degree, order, links, most)
+    core, _ = eliminate.for_work(len(i) * (20 + 2 * width))(rows, degree, order, links, most)
     if core < 0:
         return None
     gone = np.zeros(n, dtype=bool)
@@ -149,7 +149,7 @@ def triangulated_frame(n: int, i: NDArray[Any], j: NDArray[Any], *, most: int) -
     first = np.zeros(n + 1, dtype=np.int32)
     np.cumsum(later, out=first[1:])
     keys = np.empty(int(first[core]), dtype=np.int64)
-    list_members.for_work(keys.size)(rows, order, place, core, keys)
+    list_members.for_work(keys.size + n * width // 4)(rows, order, place, core, keys)
     keys.sort()
     return Frame(n, order, place, first, (keys % n).astype(np.int32), core, dense=int(first[n]) == n * (n - 1) // 2)
 

@@ -26,6 +26,7 @@ from .columns import (
     KEEP,
     LAST,
     LEVEL,
+    N_BASES,
     N_EDGES,
     NARROWED,
     NEW,
@@ -65,11 +66,13 @@ def list_partner(active, nodes, node, partner, arc):  # type: ignore[no-untyped-
 
 
 @kernel(_nrt=False, forceinline=True)
-def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i, k, new, why, other, queued):  # type: ignore[no-untyped-def]
+def narrow(s, arc, i, k, new, why, other, queued):  # type: ignore[no-untyped-def]
     """Give an arc a smaller relation that is not empty.
 
     Parameters
     ----------
+    s
+        The `State`.
     arc, i, k
         The arc and the nodes it runs from and to.
     new
@@ -80,6 +83,7 @@ def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i
     queued
         Whether the triangles over the pair have to be closed.
     """
+    dom, edges, planes, reg, converse = s.dom, s.edges, s.planes, s.reg, s.converse
     edge = arc >> 1
     if arc & 1:
         new = converse[new]
@@ -94,9 +98,9 @@ def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i
         flip_planes(planes, i - core, k - core, old ^ new)
         flip_planes(planes, k - core, i - core, converse[old ^ new])
     elif old == reg[FULL]:
-        list_partner(active, nodes, k, i, 2 * edge + 1)
+        list_partner(s.active, s.nodes, k, i, 2 * edge + 1)
     if reg[KEEP]:
-        top = reg[TOP]
+        trail, top = s.trail, reg[TOP]
         trail[top, EDGE] = edge
         trail[top, OLD] = old
         trail[top, NEW] = new
@@ -108,17 +112,18 @@ def narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, arc, i
         reg[TOP] = top + 1
     reg[NARROWED] += 1
     if queued:
-        enqueue(edges, reg[N_EDGES], edge, size[new])
+        enqueue(edges, reg[N_EDGES], edge, s.size[new])
 
 
 @kernel(_nrt=False)
-def backjump(dom, edges, nodes, planes, active, trail, levels, reg, converse, n_bases, level):  # type: ignore[no-untyped-def]
+def backjump(s, level):  # type: ignore[no-untyped-def]
     """Take back every narrowing above decision level `level`, and empty the queue."""
-    clear_queue(edges, reg[N_EDGES], n_bases)
+    dom, edges, nodes, planes, trail, reg, converse = s.dom, s.edges, s.nodes, s.planes, s.trail, s.reg, s.converse
+    clear_queue(edges, reg[N_EDGES], reg[N_BASES])
     if reg[LEVEL] <= level:
         return
     core = reg[CORE]
-    start = levels[level + 1, 0]
+    start = s.levels[level + 1, 0]
     for t in range(reg[TOP] - 1, start - 1, -1):
         edge = trail[t, EDGE]
         old, new = trail[t, OLD], trail[t, NEW]
@@ -134,4 +139,4 @@ def backjump(dom, edges, nodes, planes, active, trail, levels, reg, converse, n_
     reg[TOP] = start
     reg[SEEN] = start
     reg[LEVEL] = level
-    reg[CURSOR] = levels[level + 1, 1]
+    reg[CURSOR] = s.levels[level + 1, 1]

@@ -66,24 +66,10 @@ from .narrow import backjump, narrow
 from .queue import enqueue, take_smallest
 from .sweep import close_triangles
 
-__all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root", "state_labels"]
+__all__ = ["close", "learn", "propagate", "recheck", "search", "settle_root"]
 
 RESTART_UNIT = 50
 LONGEST_JUMP = 100
-
-
-@kernel(_nrt=False)
-def state_labels(s, arcs, masks):  # type: ignore[no-untyped-def]
-    """Give the stated arcs their relations and queue them."""
-    edges = s.edges
-    for k in range(arcs.size):
-        if masks[k] != s.reg[FULL]:
-            arc = arcs[k]
-            edge, back = arc >> 1, arc & 1
-            narrow(
-                s.dom, edges, s.nodes, s.planes, s.active, s.trail, s.reg, s.converse, s.size,
-                arc, edges[edge, TAIL + back], edges[edge, HEAD - back], masks[k], DECIDED, 0, True,
-            )  # fmt: skip
 
 
 @kernel(_nrt=False)
@@ -100,10 +86,7 @@ def propagate(s, limit):  # type: ignore[no-untyped-def]
         while reg[SEEN] < reg[TOP]:
             edge = trail[reg[SEEN], EDGE]
             reg[SEEN] += 1
-            if edges[edge, WATCH] >= 0 and not visit_watches(
-                s.dom, edges, s.nodes, s.planes, s.active, trail, reg, s.converse, s.size,
-                s.arena, s.place, s.watch, reg[FULL], edge,
-            ):  # fmt: skip
+            if edges[edge, WATCH] >= 0 and not visit_watches(s, edge):
                 return CONFLICT
         if reg[TICKS] > limit:
             return PAUSED
@@ -112,10 +95,7 @@ def propagate(s, limit):  # type: ignore[no-untyped-def]
         edge = take_smallest(edges, reg[N_EDGES], reg[N_BASES])
         if edge < 0:
             return FIXPOINT
-        if not close_triangles(
-            s.dom, edges, s.nodes, s.upper, s.planes, s.active, trail, reg, s.converse, s.size,
-            s.compose, s.gates, edge,
-        ):  # fmt: skip
+        if not close_triangles(s, edge):
             return CONFLICT
 
 
@@ -137,7 +117,7 @@ def recheck(s):  # type: ignore[no-untyped-def]
     return False
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=3)
 def close(s, limit):  # type: ignore[no-untyped-def]
     """Close the stated network at level 0; answers as `propagate`."""
     while True:
@@ -161,32 +141,24 @@ def settle_root(s):  # type: ignore[no-untyped-def]
 def learn(s):  # type: ignore[no-untyped-def]
     """Learn from the conflict in the registers and jump back; return False when it refutes the network."""
     reg = s.reg
-    n = analyse(
-        s.dom, s.edges, s.marks, s.trail, s.levels, reg, s.arena, s.place, s.converse, s.compose, reg[FULL],
-        s.activity, s.recent, s.held, s.out, s.learnt,
-    )  # fmt: skip
+    n = analyse(s)
     reg[TROUBLE] = NO_TROUBLE
     if n == 0:
         return False
     depth = s.trail[s.marks[s.learnt[0, 0], AT], DEPTH]
-    n, level, lbd = minimise(
-        s.edges, s.marks, s.trail, s.arena, s.place, s.converse, s.compose, reg[FULL], s.stamp, 2 * reg[CONFLICTS] + 2,
-        n, s.out, s.stack, s.learnt,
-    )  # fmt: skip
+    n, level, lbd = minimise(s, 2 * reg[CONFLICTS] + 2, n)
     if reg[LOGGING]:
         _log(s.log, reg, s.learnt, n)
     # far down a network that gives way easily, what lies between is worth keeping: step back one level only
     if depth - level > LONGEST_JUMP:
         level = depth - 1
-    backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], level)
+    backjump(s, level)
     clause = -1
     if n > 1:
-        clause = add_clause(s.edges, s.arena, s.place, s.watch, reg, s.learnt, n, lbd)
+        clause = add_clause(s, n, lbd)
     edge = s.learnt[0, 0]
-    narrow(
-        s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, reg, s.converse, s.size,
-        2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.dom[2 * edge] & s.learnt[0, 1], CLAUSE, clause, True,
-    )  # fmt: skip
+    new = s.dom[2 * edge] & s.learnt[0, 1]
+    narrow(s, 2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], new, CLAUSE, clause, True)
     decay(s.activity)
     reg[CONFLICTS] += 1
     reg[SINCE_RESTART] += 1
@@ -201,13 +173,10 @@ def split(s, edge):  # type: ignore[no-untyped-def]
     reg[DECISIONS] += 1
     s.levels[reg[LEVEL], 0] = reg[TOP]
     s.levels[reg[LEVEL], 1] = reg[CURSOR]
-    narrow(
-        s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, reg, s.converse, s.size,
-        2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.split[s.dom[2 * edge]], DECIDED, 0, True,
-    )  # fmt: skip
+    narrow(s, 2 * edge, s.edges[edge, TAIL], s.edges[edge, HEAD], s.split[s.dom[2 * edge]], DECIDED, 0, True)
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=6)
 def search(s, limit):  # type: ignore[no-untyped-def]
     """Search until an answer, `limit` in the register TICKS, or a shortage of room.
 
@@ -237,7 +206,7 @@ def search(s, limit):  # type: ignore[no-untyped-def]
         if reg[SINCE_RESTART] >= RESTART_UNIT * luby(reg[RESTARTS] + 1):
             reg[RESTARTS] += 1
             reg[SINCE_RESTART] = 0
-            backjump(s.dom, s.edges, s.nodes, s.planes, s.active, s.trail, s.levels, reg, s.converse, reg[N_BASES], 0)
+            backjump(s, 0)
             if reg[CONFLICTS] >= reg[REDUCE_AT]:
                 return REDUCE
             continue

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .graph import Frame
     from .tables import Tables
 
-__all__ = ["State", "new_state", "node_table"]
+__all__ = ["State", "new_state", "node_table", "state_labels", "watch_again"]
 
 _RING = 4096
 """Stated pairs up to which each split looks at all of them."""
@@ -85,7 +85,7 @@ def new_state(
     rng: np.random.Generator,
     logging: bool = False,
 ) -> State:
-    """Lay out the arrays for a network; no label is set yet (see `search.state_labels`).
+    """Lay out the arrays for a network; no label is set yet (see `state_labels`).
 
     Parameters
     ----------
@@ -152,6 +152,57 @@ def new_state(
         split=tables.split,
         gates=tables.gates,
     )
+
+
+def state_labels(s: State, arcs: NDArray[np.int64], masks: NDArray[np.int16]) -> None:
+    """Give stated arcs, no pair twice, their relations and queue them: what `narrow.narrow` would do to each in turn."""
+    full, core = int(s.reg[c.FULL]), int(s.reg[c.CORE])
+    said = masks != full
+    edge, new = arcs[said] >> 1, np.where(arcs[said] & 1, s.converse[masks[said]], masks[said])
+    s.dom[2 * edge], s.dom[2 * edge + 1] = new, s.converse[new]
+    i, k = s.edges[edge, c.TAIL], s.edges[edge, c.HEAD]
+
+    inside = i >= core
+    for a, b, gone in (
+        (i[inside] - core, k[inside] - core, full ^ new[inside]),
+        (k[inside] - core, i[inside] - core, s.converse[full ^ new[inside]]),
+    ):
+        bit = np.uint64(1) << (b % WORD).astype(np.uint64)
+        for base in range(int(s.reg[c.N_BASES])):
+            np.bitwise_xor.at(s.planes, (a, b // WORD, base), bit * (gone >> base & 1).astype(np.uint64))
+
+    head, tail, arc = (x[~inside] for x in (k, i, 2 * edge + 1))
+    order = np.argsort(head, kind="stable")
+    head = head[order]
+    at = s.nodes[head, c.ROOM] + np.arange(head.size) - np.searchsorted(head, head)
+    s.active[at, 0], s.active[at, 1] = tail[order], arc[order]
+    s.nodes[:, c.BUSY] += np.bincount(head, minlength=len(s.nodes)).astype(np.int32)
+
+    s.reg[c.NARROWED] += edge.size
+    size = s.size[new]
+    for count in range(1, int(s.reg[c.N_BASES]) + 1):
+        bucket = s.reg[c.N_EDGES] + count
+        ring = np.concatenate([[bucket], edge[size == count], [bucket]])
+        s.edges[ring[:-1], c.AHEAD], s.edges[ring[1:], c.BEHIND] = ring[1:], ring[:-1]
+        s.edges[ring[1:-1], c.BUCKET] = count
+
+
+def watch_again(s: State) -> None:
+    """Watch the first two literals of every clause anew: what `clauses.attach` would do to each in turn."""
+    at = s.place[: int(s.reg[c.N_CLAUSES])] + c.LITERALS
+    first = np.stack([s.arena[at + k] for k in range(4)], axis=1)  # edge, mask, edge, mask
+    watch = s.watch[: 2 * len(at)]
+    watch[:, c.MASK] = first[:, [1, 3]].ravel()
+    watch[:, c.BLOCK_EDGE], watch[:, c.BLOCK_MASK] = first[:, [2, 0]].ravel(), first[:, [3, 1]].ravel()
+    edge = first[:, [0, 2]].ravel()
+    order = np.argsort(edge, kind="stable")
+    edge = edge[order]
+    same = edge[1:] == edge[:-1]
+    watch[:, c.NEXT] = -1
+    watch[order[1:][same], c.NEXT] = order[:-1][same]
+    last = np.append(~same, True)[: edge.size]
+    s.edges[:, c.WATCH] = -1
+    s.edges[edge[last], c.WATCH] = order[last]
 
 
 def node_table(frame: Frame) -> NDArray[np.int32]:

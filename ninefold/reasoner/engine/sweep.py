@@ -92,111 +92,98 @@ def losing_partners(planes, gates, relation, target, source, word):  # type: ign
 
 
 @kernel(_nrt=False)
-def _sweep_planes(  # type: ignore[no-untyped-def]
-    dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, arc, i, j
-):
+def _sweep_planes(s, arc, i, j):  # type: ignore[no-untyped-def]
     """Narrow every (i, k) in the core by the triangle over `arc` = (i, j); return False at an empty relation."""
+    dom, nodes, upper, planes, reg = s.dom, s.nodes, s.upper, s.planes, s.reg
     relation = dom[arc]
     core = reg[CORE]
     for word in range(planes.shape[1]):
-        losing = losing_partners(planes, gates, relation, i - core, j - core, word)
+        losing = losing_partners(planes, s.gates, relation, i - core, j - core, word)
         while losing != 0:
             k = core + word * WORD + lowest_bit(losing)
             losing = losing & (losing - _ONE)
             target = arc_between(nodes, upper, core, i, k)
             source = arc_between(nodes, upper, core, j, k)
-            allowed = compose_masks(compose, relation, dom[source])
+            allowed = compose_masks(s.compose, relation, dom[source])
             new = dom[target] & allowed
             if new == 0:
                 _report(reg, target, arc, source)
                 return False
             queued = new != allowed or core != 0
-            narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, queued)
+            narrow(s, target, i, k, new, arc, source, queued)
     reg[TICKS] += planes.shape[1]
     return True
 
 
 @kernel(_nrt=False)
-def _apply(  # type: ignore[no-untyped-def]
-    dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, target, i, k, arc, source
-):
+def _apply(s, target, i, k, arc, source):  # type: ignore[no-untyped-def]
     """Narrow `target` = (i, k) to ``arc ; source``; return False at an empty relation."""
-    allowed = compose_masks(compose, dom[arc], dom[source])
-    if allowed == full:
+    dom = s.dom
+    allowed = compose_masks(s.compose, dom[arc], dom[source])
+    if allowed == s.reg[FULL]:
         return True
     old = dom[target]
     new = old & allowed
     if new == old:
         return True
     if new == 0:
-        _report(reg, target, arc, source)
+        _report(s.reg, target, arc, source)
         return False
-    narrow(dom, edges, nodes, planes, active, trail, reg, converse, size, target, i, k, new, arc, source, True)
+    narrow(s, target, i, k, new, arc, source, True)
     return True
 
 
 @kernel(_nrt=False)
-def _visit_later(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):  # type: ignore[no-untyped-def]
+def _visit_later(s, arc, i, j):  # type: ignore[no-untyped-def]
     """Close the triangles of i, before the core, and j with the other later neighbours of i."""
+    dom, nodes, upper, reg = s.dom, s.nodes, s.upper, s.reg
     core, full = reg[CORE], reg[FULL]
     for at in range(nodes[i, FIRST], nodes[i + 1, FIRST]):
         k = upper[at]
         if k == j:
             continue
         first, second = 2 * at, arc_between(nodes, upper, core, j, k)
-        if dom[second] != full and not _apply(
-            dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, first, i, k, arc, second
-        ):
+        if dom[second] != full and not _apply(s, first, i, k, arc, second):
             return False
-        if dom[first] != full and not _apply(
-            dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full, second, j, k, arc + 1, first
-        ):
+        if dom[first] != full and not _apply(s, second, j, k, arc + 1, first):
             return False
     reg[TICKS] += 2 * (nodes[i + 1, FIRST] - nodes[i, FIRST])
     return True
 
 
 @kernel(_nrt=False)
-def _visit_earlier(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):  # type: ignore[no-untyped-def]
+def _visit_earlier(s, arc, i, j):  # type: ignore[no-untyped-def]
     """Narrow every kept (i, k) with k before i and j, and (j, k) not universal; return False at an empty relation."""
+    dom, nodes, active, reg = s.dom, s.nodes, s.active, s.reg
     core, full = reg[CORE], reg[FULL]
     start = nodes[j, ROOM]
     for at in range(start, start + nodes[j, BUSY]):
         k = active[at, 0]
-        if k < i and compose_masks(compose, dom[arc], dom[active[at, 1]]) != full:
-            target = arc_between(nodes, upper, core, i, k)
-            if target >= 0 and not _apply(
-                dom, edges, nodes, planes, active, trail, reg, converse, size, compose, full,
-                target, i, k, arc, active[at, 1],
-            ):  # fmt: skip
+        if k < i and compose_masks(s.compose, dom[arc], dom[active[at, 1]]) != full:
+            target = arc_between(nodes, s.upper, core, i, k)
+            if target >= 0 and not _apply(s, target, i, k, arc, active[at, 1]):
                 return False
     reg[TICKS] += nodes[j, BUSY]
     return True
 
 
 @kernel(_nrt=False)
-def close_triangles(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates, edge):  # type: ignore[no-untyped-def]
+def close_triangles(s, edge):  # type: ignore[no-untyped-def]
     """Close every triangle over a pair, in both directions; return False when a relation would become empty."""
+    edges, nodes, reg = s.edges, s.nodes, s.reg
     i, j = edges[edge, TAIL], edges[edge, HEAD]
     arc = 2 * edge
     reg[TICKS] += 8
     if i < reg[CORE]:
-        if not _visit_later(dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j):
+        if not _visit_later(s, arc, i, j):
             return False
     else:
         for back in range(2):
-            if not _sweep_planes(
-                dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, gates,
-                arc + back, edges[edge, TAIL + back], edges[edge, HEAD - back],
-            ):  # fmt: skip
+            if not _sweep_planes(s, arc + back, edges[edge, TAIL + back], edges[edge, HEAD - back]):
                 return False
-    if nodes[j, BUSY] and not _visit_earlier(
-        dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc, i, j
-    ):
+    if nodes[j, BUSY] and not _visit_earlier(s, arc, i, j):
         return False
-    return nodes[i, BUSY] == 0 or _visit_earlier(
-        dom, edges, nodes, upper, planes, active, trail, reg, converse, size, compose, arc + 1, j, i
-    )
+    return nodes[i, BUSY] == 0 or _visit_earlier(s, arc + 1, j, i)
 
 
 @kernel(_nrt=False, forceinline=True)

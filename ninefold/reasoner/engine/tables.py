@@ -10,11 +10,13 @@ intersection has one, and then a pair of relation D with stated label L is *sett
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ninefold._kernels import kernel
+from ninefold.encodings.theory import theory_of
 from ninefold.errors import TooLarge
 
 if TYPE_CHECKING:
@@ -28,7 +30,6 @@ MOST_BASES = 14
 """Most base relations the engine takes: its tables have a row for every relation."""
 
 _BLOCK = 7  # bits of a half above eight base relations
-_NEVER = 1 << MOST_BASES  # a hull that lies in no label
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,16 +81,15 @@ class Tables:
         return whole
 
     @classmethod
-    def of(cls, calculus: Calculus, tractable: NDArray[np.bool_] | None = None, *, atomic: bool = False) -> Tables:
+    def of(cls, calculus: Calculus, tractable: NDArray[np.bool_] | None = None) -> Tables:
         """Tabulate a calculus.
 
         Parameters
         ----------
         tractable
-            (2^b,) bool, the subclass for which closure decides, closed under intersection and with every base relation;
-            by default the base relations alone.
-        atomic
-            Count a pair as settled only by a base relation, whatever its label.
+            (2^b,) bool, the subclass for which closure decides, closed under intersection and with every base relation.
+            By default what is known of the calculus (`ninefold.encodings.theory`): the subclass that searches split into,
+            or else the base relations and the universal one. These tables are made once and kept for the calculi used last.
 
         Raises
         ------
@@ -101,11 +101,12 @@ class Tables:
             raise TooLarge(
                 f"calculus {calculus.name!r} has {b} base relations; the engine's tables hold at most {MOST_BASES}"
             )
+        if tractable is None:
+            return _known(calculus)
         converse = np.zeros(1 << b, dtype=np.int16)
         for k, c in enumerate(calculus.base_converse.tolist()):
             converse[1 << k : 2 << k] = converse[: 1 << k] | np.int16(1 << c)
-        base = calculus.base_composition.astype(np.int16)
-        return cls.from_arrays(converse, base, calculus.identity, tractable, atomic=atomic)
+        return cls.from_arrays(converse, calculus.base_composition.astype(np.int16), calculus.identity, tractable)
 
     @classmethod
     def from_arrays(
@@ -113,28 +114,24 @@ class Tables:
         converse: NDArray[np.int16],
         base_composition: NDArray[np.int16],
         identity: int,
-        tractable: NDArray[np.bool_] | None = None,
-        *,
-        atomic: bool = False,
+        tractable: NDArray[np.bool_],
     ) -> Tables:
         """Tabulate from the (2^b,) converses and the (b, b) composition of base relations; see `of`."""
         b = len(base_composition)
         size = np.array([mask.bit_count() for mask in range(1 << b)], dtype=np.int16)
-        if tractable is None:
-            tractable = atomic_subclass(b)
-        if atomic:
-            tractable = size <= 1
         right = _unions(base_composition)  # right[k, S] = base k ; S
-        return cls(
-            n_bases=b,
-            identity=identity,
-            converse=converse,
-            size=size,
-            compose=_blocks(right),
-            hull=np.where(size > 1, _NEVER, np.arange(1 << b)).astype(np.int16) if atomic else _hulls(tractable, b),
-            split=_splits(tractable, size, b),
-            gates=_gates(_unions(base_composition.T)),
-        )
+        hull, split = _hulls(tractable, b), _splits(tractable, size, b)
+        arrays = (converse, size, _blocks(right), hull, split, _gates(_unions(base_composition.T)))
+        for array in arrays:
+            array.flags.writeable = False
+        return cls(b, identity, *arrays)
+
+
+@lru_cache(maxsize=4)
+def _known(calculus: Calculus) -> Tables:
+    """Return the tables of what is known of a calculus; at most 17 MB each, for Allen's relations."""
+    split_class = theory_of(calculus).split_class
+    return Tables.of(calculus, atomic_subclass(calculus.n_bases) if split_class is None else split_class.member)
 
 
 @kernel(_nrt=False, forceinline=True)

@@ -1,9 +1,10 @@
 """Conflicts: statements that cannot hold together, none of which can be left out.
 
-Where closure refutes a network, its record says which statements were used, often a handful of thousands; so does a
-proof by cases where that is short. What is left is then shrunk by leaving statements out, first in blocks and in the end
-one by one, every time asking closure and, where closure finds nothing, `check`. The last round proves that each
-statement is necessary.
+First comes a refutation, and with it the statements that it rests on: closure's record where closure is enough, else a
+search whose every learned clause knows its statements (`ninefold.reasoner.networks._cores`). Then statements are left out,
+one at a time. Where the rest is still refuted, only what that refutation rests on is kept, which often drops many at once;
+where the rest has a scenario, the statement is necessary and stays. When every statement has had its turn, each of those
+left is necessary.
 
 Examples
 --------
@@ -14,12 +15,16 @@ Examples
 ...                     ("kitchen", "garden", "meet")]:
 ...     _ = net.add(a, b, words)
 >>> found = conflict(net)
+>>> found
+Conflict(3 statements, minimal: kitchen inside house; house disjoint garden; kitchen meets garden)
 >>> [str(statement) for statement in found]
 ['statement 1', 'statement 3', 'statement 4']
 
 References
 ----------
 R. R. Bakker et al., "Diagnosing and solving over-determined constraint satisfaction problems", IJCAI 1993 (deletion).
+A. Belov, I. Lynce and J. Marques-Silva, "Towards efficient MUS extraction", AI Communications 25, 2012 (each refutation
+narrows what is left).
 """
 
 from __future__ import annotations
@@ -28,26 +33,34 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ._sparse_trace import pairs_behind_refutation
-from .consistency import Consistent, Inconsistent, check
+from ninefold._wording import counted
+from ninefold.encodings.theory import theory_of
+
+from ._cores import OutOfTime
+from ._parts import Part
 from .derivation import RecordedClosure
-from .refutation import refute
+from .network import require_network
+from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
-__all__ = ["Conflict", "conflict"]
+__all__ = ["Conflict", "Shrinker", "conflict", "part_of"]
 
-_DENSE = 400
-"""Entities above which closure keeps a chordal completion of the stated pairs instead of all."""
+_RECORDED = 400
+"""Entities up to which closure is recorded pair by pair, which finds refutations of few steps."""
 
-_CASES = 30
-"""Cases up to which a proof by cases is tried for what it says about the statements used."""
+_ROUNDS = 16
+"""Searches, each with another seed, that begin with what the last refutation rests on."""
+
+_WORTH = 0.99
+"""Another round is made where the last one left at most this share of the statements."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Conflict:
     """Statements of a network that are inconsistent together.
 
@@ -58,7 +71,8 @@ class Conflict:
     statements
         In the network's order.
     minimal
-        Whether each is known to be necessary; false only where a budget ended first.
+        Whether each is known to be necessary: without it the others have a scenario. False where a budget ended before all
+        had been tried, and in calculi of which nobody has shown that closure decides them.
     """
 
     network: Network
@@ -89,17 +103,23 @@ class Conflict:
         text = self.network.calculus.text
         return "\n".join(f"{s}: {s.a} {text(s.mask)} {s.b}" for s in self.statements)
 
+    def __repr__(self) -> str:
+        kind = "minimal" if self.minimal else "perhaps not minimal"
+        return f"Conflict({counted(len(self), 'statement')}, {kind}: {told(self.network.calculus, self.statements)})"
 
-def conflict(net: Network, *, seed: int = 0, budget: float | None = None) -> Conflict | None:
-    """Return a minimal conflict of a network, or None if it is consistent.
+
+def conflict(net: Network, *, seed: int = 0, budget: float | None = None, known: bool = False) -> Conflict | None:
+    """Return a minimal conflict of a network, or None if closure and search find none.
 
     Parameters
     ----------
     seed
-        For ``check``; the same seed gives the same conflict.
+        For the search; the same seed gives the same conflict.
     budget
-        Seconds after which statements are no longer left out; what is left then is a conflict, perhaps not minimal.
-        Whether there is a conflict at all is decided without regard to it.
+        Seconds after which no more statements are left out; what is left then is a conflict, perhaps not minimal.
+    known
+        That the network is inconsistent has been decided already. Otherwise that is decided first, without regard to
+        the budget.
 
     Notes
     -----
@@ -108,10 +128,19 @@ def conflict(net: Network, *, seed: int = 0, budget: float | None = None) -> Con
 
     Complexity
     ----------
-    A closure, and one check for each statement that closure uses.
+    A search, and one more for each statement of the conflict, most of them short: what was learned is kept.
+
+    Examples
+    --------
+    >>> from ninefold.reasoner.networks.network import Network
+    >>> net = Network("rcc8")
+    >>> _ = net.add("kitchen", "house", "inside")
+    >>> conflict(net) is None
+    True
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
-    found = Shrinker(net, seed, deadline).conflict(range(net.n_statements))
+    found = Shrinker(net, seed, deadline).conflict(range(net.n_statements), known=known)
     if found is None:
         return None
     indices, minimal = found
@@ -129,13 +158,24 @@ def part_of(net: Network, indices: Iterable[int]) -> Network:
     return part
 
 
+class _Late(Exception):
+    """Time is up before every statement had its turn; what is left is a conflict."""
+
+    def __init__(self, used: list[int]) -> None:
+        super().__init__()
+        self.used = used
+
+
 class Shrinker:
     """Finds minimal conflicts inside given statements of one network.
 
     Parameters
     ----------
+    deadline
+        On the clock of `time.perf_counter`: when it has passed, no more statements are left out.
     soft_only
-        Leave hard statements where they are: a hitting set has no use for them.
+        Leave hard statements where they are: they count as part of the conflict, all of them, and are never left out. A
+        repair, which drops soft statements only, has no use for knowing which of the hard ones take part.
     """
 
     def __init__(self, net: Network, seed: int = 0, deadline: float | None = None, *, soft_only: bool = False) -> None:
@@ -143,79 +183,90 @@ class Shrinker:
         self._seed = seed
         self._deadline = deadline
         self._soft_only = soft_only
-        self._late = False
-        self._too_long = 2 * net.n_statements + 1
+        self._statements = net.statements
+        self._decides = theory_of(net.calculus).closure_decides
 
     def conflict(self, indices: Iterable[int], *, known: bool = False) -> tuple[list[int], bool] | None:
-        """Return a conflict among statements `indices`, and whether it is minimal; None if they are consistent.
+        """Return a conflict among statements `indices`, and whether it is minimal; None if there is none.
 
         Parameters
         ----------
         known
-            That they are inconsistent has been decided already.
+            That they are inconsistent has been decided already, so that the deadline holds from the beginning.
         """
-        kept = sorted(indices)
-        used = self._used(kept)
+        # statements of an entity about itself say nothing
+        given = sorted(k for k in indices if self._statements[k].a != self._statements[k].b)
+        deadline = self._deadline if known else None
+        try:
+            used = self._first_refutation(given, deadline)
+        except OutOfTime:
+            return sorted(given), False
         if used is None:
-            if not known and not isinstance(check(part_of(self._net, kept), seed=self._seed), Inconsistent):
-                return None
-            used = self._used_by_cases(kept)
-        minimal = True
-        size = max(1, len(used) // 4)
-        while True:
-            used, done = self._pass(used, size)
-            if not done or size == 1:
-                minimal = done
+            return None
+        try:
+            used = self._without_each(used)
+        except _Late as late:
+            return sorted(late.used), False
+        return sorted(used), self._decides
+
+    def _first_refutation(self, given: list[int], deadline: float | None) -> list[int] | None:
+        """Return the statements that a refutation rests on, made few by further rounds; None if there is none."""
+        used = self._recorded(given)
+        if used is not None:
+            return used
+        part = self._part(given)
+        used = part.refute(given, deadline)
+        if used is None:
+            return None
+        used = self._with_hard(given, used)
+        recorded = self._recorded(used)
+        if recorded is not None:
+            return recorded
+        for more in range(1, _ROUNDS if part.searched else 0):
+            before = used
+            try:
+                fewer = self._part(used, more).refute(used, self._deadline)
+            except OutOfTime:
                 break
-            size = min(size // 2, max(1, len(used) // 4)) or 1
-        return sorted(used), minimal
+            if fewer is None:
+                break
+            used = self._with_hard(used, fewer)
+            if len(used) > _WORTH * len(before):
+                break
+        return used
 
-    def _pass(self, used: list[int], size: int) -> tuple[list[int], bool]:
-        """Try to leave out each block of `size` statements; also return whether the budget lasted."""
-        statements = self._net.statements
-        # what comes first is left out first: soft before hard, late before early
-        order = sorted(used, key=lambda k: (statements[k].hard, -k))
+    def _without_each(self, used: list[int]) -> list[int]:
+        """Leave out what can be left out, soft statements before hard ones and late before early ones."""
+        part = self._part(used)
+        order = sorted(used, key=lambda k: (self._statements[k].hard, -k))
         if self._soft_only:
-            order = [k for k in order if not statements[k].hard]
-        necessary: set[int] = set()
-        while order:
-            block = set(order[:size])
-            rest = [k for k in used if k not in block]
-            smaller = self._refuted(rest)
-            if smaller is None:
-                if self._late:
-                    return used, False
-                necessary |= block
-            else:
-                used = smaller
-            order = [k for k in order if k in set(used) and k not in necessary and k not in block]
-        return used, True
+            order = [k for k in order if not self._statements[k].hard]
+        kept = set(used)
+        for k in order:
+            if k not in kept:
+                continue
+            if self._deadline is not None and time.perf_counter() > self._deadline:
+                raise _Late(used)
+            rest = [x for x in used if x != k]
+            try:
+                fewer = part.refute(rest, self._deadline)
+            except OutOfTime:
+                raise _Late(used) from None
+            if fewer is not None:
+                used = self._with_hard(rest, fewer)
+                kept = set(used)
+                if part.too_wide_for(used):
+                    part = self._part(used)
+        return used
 
-    def _refuted(self, rest: list[int]) -> list[int] | None:
-        """Return the part of `rest` that refutes it, or None if it is consistent (or time is up)."""
-        left = None if self._deadline is None else self._deadline - time.perf_counter()
-        if left is not None and left <= 0:
-            self._late = True
-            return None
-        # most often the rest is consistent, which check sees faster on few statements than a closure over all pairs
-        verdict = check(part_of(self._net, rest), budget=left, seed=self._seed)
-        if not isinstance(verdict, Inconsistent):
-            self._late = not isinstance(verdict, Consistent)
-            return None
-        return self._used(rest) or self._used_by_cases(rest)
+    def _part(self, indices: Sequence[int], more: int = 0) -> Part:
+        """Lay out some statements for the search."""
+        chosen = [self._statements[k] for k in indices]
+        return Part(chosen, self._net.calculus, decides=self._decides, seed=self._seed + more)
 
-    def _used(self, kept: Sequence[int]) -> list[int] | None:
+    def _recorded(self, kept: Sequence[int]) -> list[int] | None:
         """Return the statements closure needs to refute `kept`, fewer at every round; None if it does not."""
         used: list[int] | None = None
-        while (part := part_of(self._net, kept)).n_entities > _DENSE:
-            pairs = part.constraints()
-            behind = pairs_behind_refutation(part.calculus, pairs)
-            if behind is None:
-                return used
-            found = self._with_hard(kept, {sorted(kept)[k] for pair in behind for k in pairs.statements(pair)})
-            if len(found) == len(kept):
-                return found
-            used = kept = found
         while True:
             closure = self._refuting_closure(kept)
             if closure is None:
@@ -227,11 +278,13 @@ class Shrinker:
 
     def _refuting_closure(self, kept: Sequence[int]) -> RecordedClosure | None:
         """Return the closure of some statements if it refutes them; hard ones are stated and closed first."""
-        statements = [self._net.statements[k] for k in kept if self._net.statements[k].a != self._net.statements[k].b]
+        statements = [self._statements[k] for k in kept]
         index: dict[str, int] = {}
         for s in statements:
             index.setdefault(s.a, len(index))
             index.setdefault(s.b, len(index))
+        if len(index) > _RECORDED:
+            return None
         closure = RecordedClosure(self._net.calculus, len(index))
         for hard in (True, False):
             for s in statements:
@@ -241,24 +294,8 @@ class Shrinker:
                 return closure
         return None
 
-    def _used_by_cases(self, kept: Sequence[int]) -> list[int]:
-        """Return the statements that a proof by cases needs, or all of them where it would be long.
-
-        After a long one the next is sought when half of the statements are gone.
-        """
-        if 2 * len(kept) > self._too_long:
-            return list(kept)
-        part = part_of(self._net, kept)
-        about = [k for k in kept if self._net.statements[k].a != self._net.statements[k].b]
-        triples = [(part.index(s.a), part.index(s.b), s.mask) for s in (self._net.statements[k] for k in about)]
-        found = refute(self._net.calculus, part.n_entities, triples, most=_CASES)
-        if found is None:
-            self._too_long = len(kept)
-            return list(kept)
-        return self._with_hard(kept, {about[k] for k in found.sources if k < len(about)})
-
     def _with_hard(self, kept: Sequence[int], sources: Iterable[int]) -> list[int]:
         used = set(sources)
         if self._soft_only:
-            used |= {k for k in kept if self._net.statements[k].hard}
+            used |= {k for k in kept if self._statements[k].hard}
         return sorted(used)

@@ -1,51 +1,36 @@
 """Is a relation network consistent? ``check`` decides it, and only that: drawings and conflicts are made when asked for.
 
-Closure comes first. Where every label is in a tractable subclass (H8 of RCC-8) it decides; otherwise a conflict-driven
-search with closure as its theory does (`ninefold.reasoner.engine`), on all pairs of a dense network and on a chordal
-completion of a sparse one. ``method`` names an encoding and a SAT solver instead, an independent referee for small networks.
+`ninefold.reasoner.networks.deciding` does the work; here are the verdicts that users get.
 
 Closure of one base relation a pair decides consistency for RCC-8, RCC-5, the point algebra and Allen's intervals. For a
 calculus from a file nobody has shown that, so a network that closure cannot refute is `Unknown` there, never `Consistent`.
-
-References
-----------
-J. Renz and B. Nebel, "On the complexity of qualitative spatial reasoning: a maximal tractable fragment of the Region
-Connection Calculus", Artificial Intelligence 108 (1999). J. Huang, "Compactness and its implications for qualitative spatial
-and temporal reasoning", KR 2012 (patchwork, which is why a chordal completion is enough).
+`ninefold.encodings.theory` keeps what is known of each calculus.
 """
 
 from __future__ import annotations
 
-import math
-import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
-from ninefold.encodings import ALLEN, H8, POINT, RCC5, RCC8, encode, open_solver
 from ninefold.errors import BadInput
 
-from ..engine.engine import Engine
-from ..engine.graph import dense_frame, triangulated_frame
-from ..engine.tables import Tables
+from .deciding import decide, why_unknown
+from .network import require_network
 from .proofs import Proof, digest_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
-
-    from ninefold.encodings.calculus import Calculus
 
     from ..engine.graph import Frame
     from .conflicts import Conflict
+    from .deciding import Decision, Kind
     from .network import Network
     from .scenario import Scenario
 
 __all__ = ["Consistent", "Inconsistent", "Unknown", "Verdict", "check"]
-
-DEFAULT_SOLVER = "cadical195"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,19 +43,23 @@ class Consistent:
         The network, as it was decided.
     seed
         Of the search.
+    decision
+        What was decided and what shows it.
     """
 
     network: Network = field(repr=False)
     seed: int = 0
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
     @property
     def scenario(self) -> Scenario:
-        """One base relation for every pair of entities, all at once possible; made anew at each request, O(n^3)."""
-        from .enumeration import some_scenario
+        """One base relation for every pair of entities, all at once possible.
 
-        found = some_scenario(self.network, seed=self.seed)
-        if found is None:
-            raise BadInput("the network was changed since it was decided, and is inconsistent now")
+        Made at the first request and kept. No search is needed: the labels that the decision found are closed once more,
+        or a SAT solver's model is read (see `ninefold.reasoner.networks.completion`).
+        """
+        found = self.decision.scenario
+        assert found is not None  # noqa: S101 - a consistent decision has a witness
         return found
 
 
@@ -86,11 +75,14 @@ class Inconsistent:
         Of the search.
     proof
         What `ninefold.reasoner.networks.proofs` confirms, if it was asked for.
+    decision
+        What was decided; with a proof also the frame and the learned clauses.
     """
 
     network: Network = field(repr=False)
     seed: int = 0
     proof: Proof | None = field(default=None, repr=False)
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
     def conflict(self) -> Conflict:
         """Return a minimal set of statements that cannot hold together; see `ninefold.reasoner.networks.conflicts`."""
@@ -112,10 +104,17 @@ class Unknown:
         The network.
     reason
         Why, in words.
+    kind
+        ``"time"``: the budget was spent, and a larger one may decide it; ``"theory"``: nobody has shown that closure
+        decides networks of this calculus, and no budget helps.
+    decision
+        What was found until then.
     """
 
     network: Network = field(repr=False)
-    reason: str = ""
+    reason: str
+    kind: Kind
+    decision: Decision = field(kw_only=True, repr=False, compare=False)
 
 
 Verdict: TypeAlias = Consistent | Inconsistent | Unknown
@@ -129,7 +128,8 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     net
         The network; a copy goes into the verdict.
     budget
-        Seconds after which the answer is `Unknown`; None for no limit.
+        Seconds after which the answer is `Unknown`; None for no limit. Compiling the engine, once a machine, or loading it,
+        once a process, is not counted; ``verdict.decision.compiling`` says how long that took.
     method
         ``"auto"``, or an encoding and a SAT solver, such as ``"support:glucose42"`` (the solver may be left out).
     proof
@@ -161,58 +161,16 @@ def check(net: Network, budget: float | None = None, method: str = "auto", *, pr
     >>> check(net), check(net, method="support")
     (Inconsistent(seed=0), Inconsistent(seed=0))
     """
-    if budget is not None and not budget > 0:
-        raise BadInput(f"a budget is a positive number of seconds, not {budget!r}")
-    deadline = None if budget is None or math.isinf(budget) else time.perf_counter() + budget
+    require_network(net)
     decided = net.copy()
-    constraints = decided.constraints()
-    if proof and method != "auto":
-        raise BadInput(f"only method 'auto' keeps a proof, not {method!r}")
-    log: list[NDArray[np.int32]] | None = [] if proof else None
-    if (constraints.mask == 0).any():
-        return Inconsistent(decided, seed, None if log is None else _proof(decided, None, log))
-    if decided.n_entities < 2 or not constraints.mask.size:
-        return Consistent(decided, seed)
-    if method == "auto":
-        frame = _frame(decided, sparse=_closure_decides(decided.calculus))
-        found = _search(decided, frame, deadline, seed, log)
-        if found is False:
-            return Inconsistent(decided, seed, None if log is None else _proof(decided, frame, log))
-    else:
-        found = _by_sat(decided, method, deadline)
-    if found is None:
-        return Unknown(decided, f"{budget} s were not enough")
-    if not found:
-        return Inconsistent(decided, seed)
-    if not _closure_decides(decided.calculus):
-        name = decided.calculus.name
-        return Unknown(decided, f"closure finds no conflict, but nobody has shown that closure decides {name!r}")
-    return Consistent(decided, seed)
-
-
-def _closure_decides(calculus: Calculus) -> bool:
-    """Say whether closure decides networks of one base relation a pair, on chordal completions too."""
-    return calculus in (RCC8, RCC5, POINT, ALLEN)
-
-
-def _search(
-    net: Network, frame: Frame, deadline: float | None, seed: int, log: list[NDArray[np.int32]] | None
-) -> bool | None:
-    stated = net.constraints()
-    tables = Tables.of(net.calculus, H8.member if net.calculus == RCC8 else None)
-    masks = stated.mask.astype(np.int16)
-    engine = Engine(tables, frame, frame.arcs(stated.i, stated.j), masks, seed=seed, log=log)
-    closed = engine.close(deadline)
-    if not closed:
-        return closed
-    return engine.search(deadline)
-
-
-def _frame(net: Network, *, sparse: bool) -> Frame:
-    """Keep a chordal completion where it has less than half of all pairs, else all."""
-    n, stated = net.n_entities, net.constraints()
-    frame = triangulated_frame(n, stated.i, stated.j, most=n * (n - 1) // 4) if sparse else None
-    return frame if frame is not None else dense_frame(n)
+    decision = decide(decided, budget=budget, method=method, proof=proof, seed=seed)
+    if decision.consistent:
+        return Consistent(decided, seed, decision=decision)
+    if decision.consistent is None:
+        kind = decision.kind or "time"
+        return Unknown(decided, why_unknown(decided.calculus, kind, budget), kind, decision=decision)
+    proved = None if decision.log is None else _proof(decided, decision.frame, decision.log)
+    return Inconsistent(decided, seed, proved, decision=decision)
 
 
 def _proof(net: Network, frame: Frame | None, log: Sequence[NDArray[np.int32]]) -> Proof:
@@ -225,13 +183,3 @@ def _proof(net: Network, frame: Frame | None, log: Sequence[NDArray[np.int32]]) 
             pairs = tuple(zip(tail, head, strict=True))
         clauses = [tuple((tail[e], head[e], mask) for e, mask in clause.tolist()) for clause in log if len(clause)]
     return Proof(net.calculus.name, net.n_entities, digest_of(net), pairs, (*clauses, ()))
-
-
-def _by_sat(net: Network, method: str, deadline: float | None) -> bool | None:
-    encoding, _, solver_name = method.partition(":")
-    encoded = encode(encoding, net.calculus, net.n_entities, net.constraints().triples())
-    left = None if deadline is None else deadline - time.perf_counter()
-    if left is not None and left <= 0:
-        return None
-    with open_solver(solver_name or DEFAULT_SOLVER, encoded.clauses) as solver:
-        return solver.solve(budget=left)

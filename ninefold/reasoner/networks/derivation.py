@@ -1,9 +1,9 @@
 """Algebraic closure that remembers: every refinement keeps the triangle, or the statement, that caused it.
 
 The record is a *trail*, one row a refinement, which is also the queue of what is still to be propagated: first in, first
-out, so that what needs few steps is found by few steps. `RecordedClosure.proof` walks the trail backwards and keeps only
-what a conclusion needs; that is what conflicts and explanations are replays of. Undoing the trail restores any earlier
-state, which is what enumeration lives on. Deciding large networks is the engine's work, not this module's.
+out, so that what needs few steps is found by few steps. `RecordedClosure.derivation` walks the trail backwards and keeps
+only what a conclusion needs; that is what conflicts and explanations are replays of. Undoing the trail restores any
+earlier state, which is what enumeration lives on. Deciding large networks is the engine's work, not this module's.
 
 Examples
 --------
@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -39,21 +39,29 @@ if TYPE_CHECKING:
 
     from ninefold.encodings.calculus import Calculus
 
-__all__ = ["Fact", "Proof", "RecordedClosure"]
+__all__ = ["Derivation", "Fact", "RecordedClosure"]
 
 _MEMORY = 4 << 30
 _I, _J, _VIA, _BEFORE, _AFTER = range(5)
 _FIXPOINT, _EMPTY, _FULL = range(3)
-_PLAIN_STEPS = 2
-"""Elementary steps to look at one triangle, of the kind `Kernel.for_work` counts."""
+
+
+class _Tables(NamedTuple):
+    """Converse and composition of all relations, empty for a calculus with many; and of base relations."""
+
+    converse: NDArray[np.integer]
+    base_converse: NDArray[np.int64]
+    compose: NDArray[np.integer]
+    base_compose: NDArray[np.int64]
 
 
 @kernel
-def _converse(table, base, mask):  # type: ignore[no-untyped-def]
+def _converse(tables, mask):  # type: ignore[no-untyped-def]
     """Return the converse of a relation, from the table of all relations if there is one."""
-    if table.size:
-        return table[mask]
+    if tables.converse.size:
+        return tables.converse[mask]
     result = 0
+    base = tables.base_converse
     for k in range(base.size):
         if mask >> k & 1:
             result |= 1 << base[k]
@@ -61,11 +69,12 @@ def _converse(table, base, mask):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _compose(table, base, r, s):  # type: ignore[no-untyped-def]
+def _compose(tables, r, s):  # type: ignore[no-untyped-def]
     """Return the composition of two relations, from the table of all relations if there is one."""
-    if table.size:
-        return table[r, s]
+    if tables.compose.size:
+        return tables.compose[r, s]
     result = 0
+    base = tables.base_compose
     for k in range(base.shape[0]):
         if r >> k & 1:
             for l in range(base.shape[0]):
@@ -75,7 +84,7 @@ def _compose(table, base, r, s):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _propagate(rel, trail, head, top, absorbing, full, converse, base_converse, compose, base_compose):  # type: ignore[no-untyped-def]
+def _propagate(rel, trail, head, top, absorbing, full, tables):  # type: ignore[no-untyped-def]
     """Close the triangles over every trail row from `head` on; return (status, head, top).
 
     Parameters
@@ -105,10 +114,10 @@ def _propagate(rel, trail, head, top, absorbing, full, converse, base_converse, 
                     if absorbing and second == full:
                         continue
                     old = rel[a, k]
-                    new = old & _compose(compose, base_compose, first, second)
+                    new = old & _compose(tables, first, second)
                     if new != old:
                         rel[a, k] = new
-                        rel[k, a] = _converse(converse, base_converse, new)
+                        rel[k, a] = _converse(tables, new)
                         trail[top, 0] = a
                         trail[top, 1] = k
                         trail[top, 2] = via
@@ -123,7 +132,7 @@ def _propagate(rel, trail, head, top, absorbing, full, converse, base_converse, 
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One line of a proof: entities i and j are related by `mask`.
+    """One line of a derivation: entities i and j are related by `mask`.
 
     Attributes
     ----------
@@ -134,7 +143,7 @@ class Fact:
     via
         For a derived fact the third entity, or -1.
     left, right
-        Indices of the facts about (i, via) and (via, j) in the proof, or -1 where nothing need be known.
+        Indices of the facts about (i, via) and (via, j) in the derivation, or -1 where nothing need be known.
     kept
         Index of an earlier fact about (i, j) that is intersected with this conclusion, or -1.
     """
@@ -150,14 +159,14 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class Derivation:
     """Facts in an order in which each follows from statements and from facts before it; the last is the conclusion."""
 
     facts: tuple[Fact, ...]
 
     @property
     def conclusion(self) -> Fact:
-        """The last fact; its mask is 0 where the proof is a refutation."""
+        """The last fact; its mask is 0 where the derivation is a refutation."""
         return self.facts[-1]
 
     @property
@@ -194,8 +203,8 @@ class RecordedClosure:
         np.fill_diagonal(self.labels, calculus.identity)
         self._trail = np.empty((4 * n + 256, 5), dtype=np.int64)
         self._head = self._top = self._work = 0
-        none = np.zeros(0, dtype=dtype)
-        self._tables = (
+        none: NDArray[np.integer] = np.zeros(0, dtype=dtype)
+        self._tables = _Tables(
             calculus.converse_table if calculus.converse_table is not None else none,
             calculus.base_converse.astype(np.int64),
             calculus.composition_table if calculus.composition_table is not None else none.reshape(0, 0),
@@ -237,12 +246,12 @@ class RecordedClosure:
             return False
         full = self.calculus.universal
         while True:
-            before = self._head
-            run = _propagate.for_work(self._work + _PLAIN_STEPS * self.n * (self._top - before))
+            known = self._top
+            run = _propagate.for_work(self._work + self.n * (known - self._head))
             status, self._head, self._top = run(
-                self.labels, self._trail, self._head, self._top, self._absorbing, full, *self._tables
+                self.labels, self._trail, self._head, self._top, self._absorbing, full, self._tables
             )
-            self._work += _PLAIN_STEPS * self.n * (self._head - before)
+            self._work = self.n * max(self._head - known, 0)  # found on the way and not counted yet
             if status != _FULL:
                 return bool(status == _FIXPOINT)
             self._room(len(self._trail))
@@ -261,22 +270,22 @@ class RecordedClosure:
         self._head = self._top = mark
         self._order = None
 
-    def refutation(self) -> Proof:
-        """Return the proof that a relation is empty, after `close` or `state` returned False."""
+    def refutation(self) -> Derivation:
+        """Return the derivation of an empty relation, after `close` or `state` returned False."""
         if not self._top or self._trail[self._top - 1, _AFTER]:
             raise BadInput("closure left every pair a relation: there is nothing to refute")
         i, j = self._trail[self._top - 1, :2].tolist()
-        return self.proof(i, j, 0)
+        return self.derivation(i, j, 0)
 
-    def proof(self, i: int, j: int, wanted: int) -> Proof:
-        """Return a proof that (i, j) is related by some of `wanted`, which has to hold all of its present relation.
+    def derivation(self, i: int, j: int, wanted: int) -> Derivation:
+        """Derive that (i, j) is related by some of `wanted`, which has to hold all of its present relation.
 
-        Each premise is weakened to what is needed of it before its own proof is sought, so that a proof uses few
-        statements (not always the fewest); its facts are then as strong as those statements make them.
+        Each premise is weakened to what is needed of it before its own derivation is sought, so that few statements
+        are used (not always the fewest); its facts are then as strong as those statements make them.
         """
         if self.relation(i, j) & ~wanted:
             raise BadInput("closure does not show this: the pair can still be outside the wanted relation")
-        return _Tracer(self).proof(i, j, wanted)
+        return _Tracer(self).derivation(i, j, wanted)
 
     def _room(self, rows: int) -> None:
         if self._top + rows > len(self._trail):
@@ -323,13 +332,13 @@ class _Tracer:
         self._full = closure.calculus.universal
         self._rows: dict[tuple[int, int], list[int]] = {}
 
-    def proof(self, i: int, j: int, wanted: int) -> Proof:
-        """See `RecordedClosure.proof`; facts are made once their premises are, with a stack for the recursion."""
+    def derivation(self, i: int, j: int, wanted: int) -> Derivation:
+        """See `RecordedClosure.derivation`; facts are made once their premises are, with a stack for the recursion."""
         facts: list[Fact] = []
         known: dict[tuple[int, int, int, int], int] = {}
-        goal = self._goal(i, j, wanted, len(self._closure._trail))
+        goal = self._goal(i, j, wanted, self._closure.mark())
         if goal is None:
-            return Proof((Fact(i, j, self._full),))
+            return Derivation((Fact(i, j, self._full),))
         stack = [goal]
         while stack:
             top = stack[-1]
@@ -344,7 +353,7 @@ class _Tracer:
             known[top] = len(facts)
             facts.append(self._fact(top, [-1 if p is None else known[p] for p in premises], facts))
             stack.pop()
-        return Proof(tuple(facts))
+        return Derivation(tuple(facts))
 
     def _goal(self, i: int, j: int, wanted: int, before: int) -> tuple[int, int, int, int] | None:
         """Return (row, i, j, wanted) of the first row that put (i, j) into `wanted`, or None if it always was."""

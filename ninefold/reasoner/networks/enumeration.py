@@ -1,7 +1,7 @@
 """Every scenario of a network, one after another, and how many there are.
 
 Pairs get base relations one at a time, with closure after each. Pairs whose labels closure cannot be trusted with come
-first, and `check` confirms every step among them; from then on no step leads into a dead end, so that the next scenario
+first, and `decide` confirms every step among them; from then on no step leads into a dead end, so that the next scenario
 is never far.
 
 Examples
@@ -23,13 +23,11 @@ from dataclasses import dataclass
 from itertools import combinations, islice
 from typing import TYPE_CHECKING
 
-import numpy as np
+from ninefold.encodings.theory import theory_of
+from ninefold.errors import BadInput, Undecided
 
-from ninefold.errors import BadInput
-
-from .consistency import Inconsistent, check
+from .deciding import decide, undecided
 from .derivation import RecordedClosure
-from .refutation import decides
 from .scenario import Scenario
 
 if TYPE_CHECKING:
@@ -49,7 +47,7 @@ class Count:
     count
         Scenarios found.
     exact
-        False if there are more.
+        False if there are more, or perhaps are: of a calculus that nobody has shown how to decide none is known for sure.
     """
 
     count: int
@@ -66,31 +64,25 @@ def count(net: Network, limit: int = 10_000, *, seed: int = 0) -> Count:
     """
     if limit < 0:
         raise BadInput(f"a limit is a number of scenarios, not {limit}")
-    found = sum(1 for _ in islice(scenarios(net, seed=seed), limit + 1))
+    try:
+        found = sum(1 for _ in islice(scenarios(net, seed=seed), limit + 1))
+    except Undecided:
+        return Count(0, exact=False)
     return Count(min(found, limit), found <= limit)
 
 
 def some_scenario(net: Network, *, seed: int = 0) -> Scenario | None:
-    """Return one scenario of a network, or None if it is inconsistent.
+    """Return one scenario of a network, the one that ``check`` finds, or None if it is inconsistent.
 
-    In a closed network of tractable labels every pair can take its first base relation (in the order DC, EC, PO, TPP,
-    NTPP, ... of the bits) at once. That is tried first, and kept if every triangle confirms it; else the first of
-    `scenarios` is returned.
-
-    Complexity
-    ----------
-    One closure and O(n^3) bit operations where that works.
+    Raises
+    ------
+    Undecided
+        Nobody has shown that closure decides the calculus, and it refutes nothing.
     """
-    closure = closed(net)
-    if closure is None:
-        return None
-    labels = closure.labels.astype(np.int64)
-    first = np.triu(labels & -labels, 1)
-    backwards, mirrored = np.zeros_like(first), first.T
-    for mask in np.unique(first).tolist():
-        backwards[mirrored == mask] = net.calculus.converse_of(mask)
-    found = Scenario.from_labels(net.calculus, net.entities, first | backwards)
-    return found if found.is_closed() and found.satisfies(net) else next(scenarios(net, seed=seed), None)
+    decision = decide(net, seed=seed)
+    if decision.consistent is None:
+        raise undecided(net.calculus)
+    return decision.scenario
 
 
 def closed(net: Network) -> RecordedClosure | None:
@@ -105,17 +97,28 @@ def closed(net: Network) -> RecordedClosure | None:
 def scenarios(net: Network, *, seed: int = 0) -> Iterator[Scenario]:
     """Yield every scenario of a network, each once; none if it is inconsistent.
 
+    Raises
+    ------
+    Undecided
+        When the first one is asked for: nobody has shown that closure decides the calculus, and it refutes nothing, so
+        that a closed network of base relations is perhaps no scenario.
+
     Parameters
     ----------
     seed
-        For ``check``. The order of the scenarios does not depend on it.
+        For the search. The order of the scenarios does not depend on it.
 
     Complexity
     ----------
     Between two scenarios O(n^2) closures, and as many checks where labels are outside a tractable class.
     """
     closure = closed(net)
-    if closure is not None and not isinstance(check(net, seed=seed), Inconsistent):
+    if closure is None:
+        return
+    decision = decide(net, seed=seed)
+    if decision.consistent is None:
+        raise undecided(net.calculus)
+    if decision.consistent:
         yield from _Enumerator(net, closure, seed).run()
 
 
@@ -133,6 +136,7 @@ class _Level:
 class _Enumerator:
     def __init__(self, net: Network, closure: RecordedClosure, seed: int) -> None:
         self._net = net
+        self._theory = theory_of(net.calculus)
         self._closure = closure
         self._seed = seed
         self._pairs = list(combinations(range(net.n_entities), 2))
@@ -173,7 +177,7 @@ class _Enumerator:
         return hard or pairs[done], done, hard is None
 
     def _undecided(self) -> Iterator[tuple[int, int]]:
-        return (pair for pair in self._stated() if not decides(self._net.calculus, self._closure.relation(*pair)))
+        return (pair for pair in self._stated() if not self._theory.decides(self._closure.relation(*pair)))
 
     def _stated(self) -> Iterator[tuple[int, int]]:
         constraints = self._net.constraints()
@@ -190,4 +194,4 @@ class _Enumerator:
             (i, j, closure.relation(i, j)) for i, j in self._pairs if closure.relation(i, j) != calculus.universal
         ]  # fmt: skip
         net = Network.from_constraints(calculus, self._net.n_entities, present)
-        return not isinstance(check(net, seed=self._seed), Inconsistent)
+        return decide(net, seed=self._seed).consistent is not False

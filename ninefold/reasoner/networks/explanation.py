@@ -19,18 +19,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted, shortened
 from ninefold.errors import BadInput
 
 from .conflicts import Conflict, conflict
 from .refutation import refute
-from .words import phrase
+from .words import phrase, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .derivation import Fact, Proof
-    from .network import Network, Statement
+    from .derivation import Derivation, Fact
+    from .network import Network
     from .refutation import Refutation
+    from .statement import Statement
 
 __all__ = ["Explanation", "explain"]
 
@@ -41,7 +43,7 @@ _SEARCHED = 8
 """Closures tried for each case that may be printed."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
     """A derivation in words; ``str`` gives all of it.
 
@@ -66,6 +68,10 @@ class Explanation:
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
+
+    def __repr__(self) -> str:
+        size = counted(self.cases, "case") if self.complete else "too long to print"
+        return f"Explanation({size}, {counted(len(self.lines), 'line')}: {shortened(self.lines[0])})"
 
 
 def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0) -> Explanation:
@@ -100,11 +106,12 @@ def explain(given: Network | Conflict, *, most: int = MOST_CASES, seed: int = 0)
 def _listed(found: Conflict, refutation: Refutation | None, most: int) -> list[str]:
     calculus = found.network.calculus
     if refutation is None:
-        end = f"No proof of up to {most} cases was found, so none is printed; check confirms the contradiction."
+        end = f"No proof of up to {counted(most, 'case')} was found, so none is printed; check confirms the contradiction."
     else:
-        end = f"The proof takes {refutation.n_leaves} cases and is not printed; check confirms the contradiction."
-    shown = [f"  {phrase(calculus, s.a, s.mask, s.b)}{_said(s)}" for s in found.statements]
-    head = f"These {len(shown)} statements contradict each other"
+        cases = counted(refutation.n_leaves, "case")
+        end = f"The proof takes {cases} and is not printed; check confirms the contradiction."
+    shown = [f"  {spoken(calculus, s)}" for s in found.statements]
+    head = f"These {counted(len(shown), 'statement')} contradict each other"
     necessary = ", and none of them can be left out" if found.minimal else ""
     return [f"{head}{necessary}:", *shown, end]
 
@@ -127,23 +134,23 @@ class _Writer:
     def refutation(self, refutation: Refutation) -> None:
         """Write a refutation under the present assumptions."""
         indent = "  " * len(self._assumed)
-        if refutation.proof is not None:
-            self._proof(refutation.proof, indent)
+        if refutation.derivation is not None:
+            self._derivation(refutation.derivation, indent)
             return
         i, j = refutation.pair or (0, 0)
         if refutation.ground is not None and len(refutation.ground.facts) > 1:
-            self._proof(refutation.ground, indent)
+            self._derivation(refutation.ground, indent)
         left = self._phrase(i, j, refutation.label)
-        self.lines.append(f"{indent}{len(refutation.cases)} cases, since {left}:")
+        self.lines.append(f"{indent}{counted(len(refutation.cases), 'case')}, since {left}:")
         for number, (part, case) in enumerate(refutation.cases):
             self.lines.append(f"{indent}case {number + 1}, {self._phrase(i, j, part)}:")
             self._assumed.append((i, j, part))
             self.refutation(case)
             self._assumed.pop()
 
-    def _proof(self, proof: Proof, indent: str) -> None:
+    def _derivation(self, derivation: Derivation, indent: str) -> None:
         """Write a proof, a line a derived fact; the last line ends in the contradiction, if it is one."""
-        facts = proof.facts
+        facts = derivation.facts
         shown = {k: line for k, fact in enumerate(facts) if (line := self._derived(fact, facts))}
         if not shown:
             # statements about one pair that leave nothing of it

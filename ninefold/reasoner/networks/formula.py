@@ -31,6 +31,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 if TYPE_CHECKING:
@@ -148,7 +149,7 @@ def parse(text: str, net: Network) -> Formula:
         A relation the calculus does not have, or an entity no statement speaks of.
     """
     if not isinstance(text, str):
-        raise BadInput(f"a formula is a string, not {text!r}")
+        raise BadInput(f"a formula is a string, not {quoted(text)}")
     if len(text) > _LONGEST:
         raise BadInput(f"a formula has at most {_LONGEST:,} characters; this one has {len(text):,}")
     return _Parser(text, net).formula()
@@ -279,12 +280,12 @@ class _Parser:
 
     def _need(self, mark: str) -> None:
         if not self._take(mark):
-            raise self._unexpected(f"{mark!r}")
+            raise self._unexpected(f"{quoted(mark)}")
 
     def _unexpected(self, wanted: str) -> BadInput:
         kind, value, place = self._tokens[self._at]
-        found = "the formula ends" if kind == "end" else f"{value!r} stands"
-        return BadInput(f"formula {_shown(self._text)}, character {place + 1}: {wanted} is expected where {found}")
+        found = "the formula ends" if kind == "end" else f"{quoted(value)} stands"
+        return BadInput(f"formula {quoted(self._text)}, character {place + 1}: {wanted} is expected where {found}")
 
 
 def _tokens(text: str) -> list[tuple[str, str, int]]:
@@ -295,7 +296,7 @@ def _tokens(text: str) -> list[tuple[str, str, int]]:
         if match is None:
             place = at + len(text[at:]) - len(text[at:].lstrip())
             hint = "; this quote is not closed" if text[place] in "\"'" else "; put names that are no plain words in quotes"
-            raise BadInput(f"formula {_shown(text)}, character {place + 1}: {text[place]!r} cannot stand here{hint}")
+            raise BadInput(f"formula {quoted(text)}, character {place + 1}: {quoted(text[place])} cannot stand here{hint}")
         kind = match.lastgroup or ""
         value, place = match[kind], match.start(kind)
         if kind == "quoted":
@@ -303,7 +304,3 @@ def _tokens(text: str) -> list[tuple[str, str, int]]:
         found.append((value if kind == "mark" else kind, value, place))
         at = match.end()
     return [*found, ("end", "", len(text))]
-
-
-def _shown(text: str) -> str:
-    return repr(text) if len(text) <= 80 else repr(text[:77] + "...")

@@ -21,65 +21,30 @@ Network(rcc8, 2 entities, 2 statements)
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.encodings.calculus import Calculus
 from ninefold.encodings.library import calculus_named
 from ninefold.errors import BadInput, UnknownName
+from ninefold.immutable import Immutable, freeze
+
+from .statement import Statement, checked_weight
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-__all__ = ["Constraints", "Network", "Statement"]
-
-
-@dataclass(frozen=True, slots=True)
-class Statement:
-    """One statement of a network: ``a`` is related to ``b`` by one of the base relations in `mask`.
-
-    Parameters
-    ----------
-    index
-        Its place in the network, from 0.
-    a, b
-        Names of the entities.
-    mask
-        Relations of the network's calculus.
-    label
-        What the one who said it calls it, or None.
-    weight
-        What it costs to drop it: `math.inf` is hard, None counts as 1.
-    """
-
-    index: int
-    a: str
-    b: str
-    mask: int
-    label: str | None = None
-    weight: float | None = None
-
-    @property
-    def cost(self) -> float:
-        """The weight, with None counted as 1."""
-        return 1.0 if self.weight is None else self.weight
-
-    @property
-    def hard(self) -> bool:
-        """Whether it must not be dropped."""
-        return self.cost == math.inf
-
-    def __str__(self) -> str:
-        return self.label or f"statement {self.index + 1}"
+__all__ = ["Constraints", "Network", "require_network"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Constraints:
+class Constraints(Immutable):
     """The statements of a network, intersected pair by pair.
 
     Attributes
@@ -100,6 +65,9 @@ class Constraints:
     mask: NDArray[Any]
     starts: NDArray[np.int64] = field(repr=False)
     statement: NDArray[np.int64] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        freeze(self.i, self.j, self.mask, self.starts, self.statement)
 
     def __len__(self) -> int:
         return self.i.size
@@ -128,15 +96,16 @@ class Network:
     tables by sort; nothing looks at it yet.
     """
 
-    __slots__ = ("_calculus", "_constraints", "_index", "_sorts", "_statements")
+    __slots__ = ("_calculus", "_constraints", "_index", "_names", "_sorts", "_statements")
 
     def __init__(self, calculus: Calculus | str) -> None:
         self._calculus = calculus_named(calculus) if isinstance(calculus, str) else calculus
         if not isinstance(self._calculus, Calculus):
-            raise BadInput(f"a network needs a calculus or the name of one, not {calculus!r}")
+            raise BadInput(f"a network needs a calculus or the name of one, not {quoted(calculus)}")
         self._index: dict[str, int] = {}
         self._sorts: list[str | None] = []
         self._statements: list[Statement] = []
+        self._names: dict[int, tuple[str, ...]] = {}
         self._constraints: Constraints | None = None
 
     @classmethod
@@ -206,7 +175,9 @@ class Network:
         known = self._index.get(key)
         if known is not None:
             if sort is not None and self._sorts[known] != sort:
-                raise BadInput(f"entity {key!r} has sort {self._sorts[known]!r}; it cannot be {sort!r} as well")
+                raise BadInput(
+                    f"entity {quoted(key)} has sort {quoted(self._sorts[known])}; it cannot be {quoted(sort)} as well"
+                )
             return known
         return self._new(key, sort)
 
@@ -253,19 +224,22 @@ class Network:
         key_a, key_b = _entity(a), _entity(b)
         mask = self._calculus.relation(relations)
         if not mask:
-            raise BadInput(f"the statement about {key_a!r} and {key_b!r} allows no relation at all")
+            raise BadInput(f"the statement about {quoted(key_a)} and {quoted(key_b)} allows no relation at all")
         if key_a == key_b and not mask & self._calculus.identity:
             equal, said = self._calculus.text(self._calculus.identity), self._calculus.text(mask)
-            raise BadInput(f"{key_a!r} cannot be {said} of itself: without {equal} no entity is related to itself")
+            raise BadInput(f"{quoted(key_a)} cannot be {said} of itself: without {equal} no entity is related to itself")
         if label is not None:
             if not isinstance(label, str) or not label.strip():
-                raise BadInput(f"a label is a non-empty string or None, not {label!r}")
+                raise BadInput(f"a label is a non-empty string or None, not {quoted(label)}")
             label = label.strip()
-        cost = _weight(weight)
+        cost = checked_weight(weight)
+        names = self._names.get(mask)
+        if names is None:
+            names = self._names[mask] = tuple(self._calculus.names(mask))
         for key in (key_a, key_b):
             if key not in self._index:
                 self._new(key)
-        statement = Statement(len(self._statements), key_a, key_b, mask, label, cost)
+        statement = Statement(key_a, names, key_b, label, cost, index=len(self._statements), mask=mask)
         self._statements.append(statement)
         self._constraints = None
         return statement
@@ -347,7 +321,7 @@ class Network:
         net._sorts = list(self._sorts)
         for at, k in enumerate(chosen):
             old = self._statements[k]
-            net._statements.append(Statement(at, old.a, old.b, old.mask, old.label, old.weight))
+            net._statements.append(replace(old, index=at))
         return net
 
     def copy(self) -> Network:
@@ -367,7 +341,27 @@ class Network:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return f"Network({self._calculus.name}, {self.n_entities} entities, {self.n_statements} statements)"
+        entities, statements = counted(self.n_entities, "entity", "entities"), counted(self.n_statements, "statement")
+        return f"Network({self._calculus.name}, {entities}, {statements})"
+
+
+def require_network(given: object) -> None:
+    """Say what to call instead, unless a network was given.
+
+    Raises
+    ------
+    BadInput
+        For a path, something that holds a network, or anything else.
+    """
+    if isinstance(given, Network):
+        return
+    if isinstance(given, str | PathLike):
+        raise BadInput(
+            f"a Network is needed, and {quoted(str(given))} is text; read_network({quoted(str(given))}) reads a file"
+        )
+    if isinstance(getattr(given, "network", None), Network):
+        raise BadInput(f"a Network is needed, not {quoted(given)}; give its .network")
+    raise BadInput(f"a Network is needed, not {quoted(given)}; Network('rcc8') begins one, read_network reads one")
 
 
 def _entity(name: str | int) -> str:
@@ -375,18 +369,4 @@ def _entity(name: str | int) -> str:
         return name.strip()
     if isinstance(name, int | np.integer) and not isinstance(name, bool):
         return str(name)
-    raise BadInput(f"an entity is named by a non-empty string or an integer, not {name!r}")
-
-
-def _weight(weight: float | None) -> float | None:
-    if weight is None:
-        return None
-    if isinstance(weight, bool) or not isinstance(weight, int | float | np.integer | np.floating):
-        raise BadInput(f"a weight is a number or None, not {weight!r}")
-    try:
-        cost = float(weight)
-    except OverflowError:
-        raise BadInput("a weight is at most 1.8e308; math.inf makes a statement hard") from None
-    if math.isnan(cost) or cost < 0:
-        raise BadInput(f"a weight is not negative; math.inf makes a statement hard: {weight!r} was given")
-    return cost
+    raise BadInput(f"an entity is named by a non-empty string or an integer, not {quoted(name)}")

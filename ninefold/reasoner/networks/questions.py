@@ -33,20 +33,22 @@ from ninefold.encodings.sat import open_solver
 from .conflicts import Shrinker
 from .consistency import Consistent, Inconsistent, check
 from .formula import Formula, parse
+from .network import require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from .formula import Atom
-    from .network import Network, Statement
+    from .network import Network
     from .scenario import Scenario
+    from .statement import Statement
 
 __all__ = ["Answer", "ask"]
 
 Value = Literal["entailed", "possible", "impossible", "unknown"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Answer:
     """An answer with evidence.
 
@@ -54,7 +56,8 @@ class Answer:
     ----------
     answer
         ``entailed``: the formula holds in every scenario; ``impossible``: in none; ``possible``: in some and not in
-        others; ``unknown``: the budget ended first. Of an inconsistent network, nothing is possible.
+        others; ``unknown``: the budget ended first, or nobody has shown that closure decides the calculus. Of an
+        inconsistent network, nothing is possible.
     satisfied, falsified
         A scenario in which the formula holds, and one in which it does not; None where there is none (or none was found
         in time).
@@ -67,6 +70,9 @@ class Answer:
     network: Network = field(repr=False)
     _used: tuple[int, ...] = field(default=(), repr=False)
     _seed: int = field(default=0, repr=False)
+
+    def __repr__(self) -> str:
+        return f"Answer({self.answer}: {_short(self.formula.text)})"
 
     @property
     def statements(self) -> tuple[Statement, ...]:
@@ -81,9 +87,13 @@ class Answer:
             rest = [x for x in kept if x != k]
             part = self.network.subset(rest)
             question = _Question(part, self.formula, negated=self.answer == "entailed", seed=self._seed)
-            if question.scenario() is None:
+            if question.scenario() is None and not question.late:
                 kept = rest
         return tuple(self.network.statements[k] for k in kept)
+
+
+def _short(text: str, most: int = 80) -> str:
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def ask(net: Network, formula: str | Formula, *, seed: int = 0, budget: float | None = None) -> Answer:
@@ -105,7 +115,8 @@ def ask(net: Network, formula: str | Formula, *, seed: int = 0, budget: float | 
     ----------
     At most one check for each combination of truth values of the atoms; as a rule far fewer.
     """
-    asked = parse(formula, net) if isinstance(formula, str) else formula
+    require_network(net)
+    asked = formula if isinstance(formula, Formula) else parse(formula, net)
     deadline = None if budget is None else time.perf_counter() + budget
     kept = net.copy()
     questions = [_Question(kept, asked, negated=negated, seed=seed, deadline=deadline) for negated in (False, True)]
@@ -131,7 +142,7 @@ class _Question:
     used
         Statements that took part in the conflicts met.
     late
-        Whether the deadline came before the answer.
+        Whether it was left undecided: the deadline came before the answer, or nobody knows how to decide the calculus.
     """
 
     def __init__(

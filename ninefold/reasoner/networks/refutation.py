@@ -1,4 +1,4 @@
-"""Refutations that can be read: a closure proof, or a split into cases each of which is refuted.
+"""Refutations that can be read: a derivation by closure, or a split into cases each of which is refuted.
 
 This is for the few statements of a conflict, not for deciding: cases are split where that ends soonest, and the search
 gives up when the proof would be too long to be of use.
@@ -13,8 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ninefold.encodings.rcc8 import RCC5, RCC8
-from ninefold.encodings.subclasses import H5, H8
+from ninefold.encodings.theory import theory_of
 
 from .derivation import RecordedClosure
 
@@ -24,9 +23,9 @@ if TYPE_CHECKING:
     from ninefold.encodings.calculus import Calculus
     from ninefold.encodings.encoding import Constraint
 
-    from .derivation import Proof
+    from .derivation import Derivation
 
-__all__ = ["Refutation", "decides", "parts_of", "refute"]
+__all__ = ["Refutation", "refute"]
 
 _LOOK_AHEAD = 16
 """Entities up to which every pair is tried before one is split."""
@@ -38,55 +37,42 @@ class Refutation:
 
     Attributes
     ----------
-    proof
-        Closure's proof, which ends in an empty relation; None where cases are split.
+    derivation
+        Closure's derivation, which ends in an empty relation; None where cases are split.
     pair
         The pair split, or None.
     cases
-        For each part of the pair's relation the refutation of the constraints with it. In their proofs the assumption
+        For each part of the pair's relation the refutation of the constraints with it. In their derivations the assumption
         is a source of its own, numbered from the number of constraints on, by depth.
     label
-        What was left of the pair, the union of the parts, and `ground`, the proof of it.
+        What was left of the pair, the union of the parts, and `ground`, the derivation of it.
     ground
-        Proof that nothing else is possible between the pair; None where there is nothing to prove.
+        Derivation that nothing else is possible between the pair; None where there is nothing to derive.
     """
 
-    proof: Proof | None = None
+    derivation: Derivation | None = None
     pair: tuple[int, int] | None = None
     cases: tuple[tuple[int, Refutation], ...] = ()
     label: int = 0
-    ground: Proof | None = None
+    ground: Derivation | None = None
 
     @property
     def sources(self) -> frozenset[int]:
         """Numbers of the constraints and assumptions used, those of cases among them."""
         used: frozenset[int] = frozenset()
-        for proof in (self.proof, self.ground):
-            used |= proof.sources if proof else frozenset()
+        for derivation in (self.derivation, self.ground):
+            used |= derivation.sources if derivation else frozenset()
         return used.union(*(case.sources for _, case in self.cases))
 
     @property
     def n_leaves(self) -> int:
-        """Number of closure proofs, 1 if no case was split."""
-        return 1 if self.proof else sum(case.n_leaves for _, case in self.cases)
+        """Number of derivations by closure, 1 if no case was split."""
+        return 1 if self.derivation else sum(case.n_leaves for _, case in self.cases)
 
     @property
     def depth(self) -> int:
         """How deep cases are split, 0 if not at all."""
-        return 0 if self.proof else 1 + max(case.depth for _, case in self.cases)
-
-
-def parts_of(calculus: Calculus, mask: int) -> tuple[int, ...]:
-    """Return the parts that a case split tries: members of a tractable subclass where one is known, else base relations."""
-    for known, tractable in ((RCC8, H8), (RCC5, H5)):
-        if calculus is known or (calculus.name == known.name and calculus == known):
-            return tractable.split(mask)
-    return tuple(1 << k for k in range(calculus.n_bases) if mask >> k & 1)
-
-
-def decides(calculus: Calculus, mask: int) -> bool:
-    """Tell whether closure decides networks of relations like this one; the universal relation always counts."""
-    return mask == calculus.universal or len(parts_of(calculus, mask)) == 1
+        return 0 if self.derivation else 1 + max(case.depth for _, case in self.cases)
 
 
 class _TooLong(Exception):
@@ -99,9 +85,9 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
     Parameters
     ----------
     constraints
-        Triples (i, j, mask); their positions are the sources of the proofs.
+        Triples (i, j, mask); their positions are the sources of the derivations.
     most
-        Closure proofs to try before giving up.
+        Derivations to try before giving up.
 
     Returns
     -------
@@ -110,7 +96,7 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
     closure = RecordedClosure(calculus, n)
     for source, (i, j, mask) in enumerate(constraints):
         if not closure.state(i, j, mask, source):
-            return Refutation(proof=closure.refutation())
+            return Refutation(derivation=closure.refutation())
     splitter = _Splitter(closure, constraints, most)
     try:
         return splitter.search(0)
@@ -121,6 +107,7 @@ def refute(calculus: Calculus, n: int, constraints: Sequence[Constraint], *, mos
 class _Splitter:
     def __init__(self, closure: RecordedClosure, constraints: Sequence[Constraint], most: int) -> None:
         self._closure = closure
+        self._theory = theory_of(closure.calculus)
         self._first = len(constraints)
         self._left = most
         self._pairs = list(dict.fromkeys((min(i, j), max(i, j)) for i, j, _ in constraints if i != j))
@@ -133,13 +120,13 @@ class _Splitter:
             self._left -= 1
             if self._left < 0:
                 raise _TooLong
-            return Refutation(proof=closure.refutation())
+            return Refutation(derivation=closure.refutation())
         pair = self._choose(depth)
         if pair is None:
             return None
         mark, label = closure.mark(), closure.relation(*pair)
         cases: list[tuple[int, Refutation]] = []
-        for part in parts_of(closure.calculus, label):
+        for part in self._theory.parts_of(label):
             closure.state(*pair, part, self._first + depth)
             found = self.search(depth + 1)
             closure.undo(mark)
@@ -149,22 +136,22 @@ class _Splitter:
             if self._first + depth not in found.sources:
                 return found  # refuted without this case
             cases.append((part, found))
-        return Refutation(pair=pair, cases=tuple(cases), label=label, ground=closure.proof(*pair, label))
+        return Refutation(pair=pair, cases=tuple(cases), label=label, ground=closure.derivation(*pair, label))
 
     def _choose(self, depth: int) -> tuple[int, int] | None:
         """Return the stated pair to split, or None if closure has decided."""
-        closure, calculus = self._closure, self._closure.calculus
-        open_pairs = [pair for pair in self._pairs if not decides(calculus, closure.relation(*pair))]
+        closure = self._closure
+        open_pairs = [pair for pair in self._pairs if not self._theory.decides(closure.relation(*pair))]
         if not open_pairs:
             return None
         if closure.n > _LOOK_AHEAD:
-            return max(open_pairs, key=lambda pair: self._blamed[pair] / len(parts_of(calculus, closure.relation(*pair))))
+            return max(open_pairs, key=lambda pair: self._blamed[pair] / len(self._theory.parts_of(closure.relation(*pair))))
         return min(open_pairs, key=lambda pair: self._after_split(pair, depth))
 
     def _after_split(self, pair: tuple[int, int], depth: int) -> tuple[int, int]:
         """Return how many parts of a pair survive closure, and how many there are: few are best."""
         closure = self._closure
-        parts, mark, alive = parts_of(closure.calculus, closure.relation(*pair)), closure.mark(), 0
+        parts, mark, alive = self._theory.parts_of(closure.relation(*pair)), closure.mark(), 0
         for part in parts:
             closure.state(*pair, part, self._first + depth)
             alive += closure.close()

@@ -31,20 +31,25 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ninefold._wording import counted
 from ninefold.errors import BadInput
 
 from .conflicts import Conflict, Shrinker
 from .consistency import Consistent, Inconsistent, check
+from .deciding import undecided
+from .network import require_network
+from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .network import Network, Statement
+    from .network import Network
+    from .statement import Statement
 
 __all__ = ["Repair", "repair"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Repair:
     """What to drop.
 
@@ -76,6 +81,15 @@ class Repair:
         """Whether dropping statements that are not hard is enough."""
         return self.conflict is None
 
+    def __repr__(self) -> str:
+        calculus, n = self.network.calculus, self.network.n_statements
+        if self.conflict is not None:
+            return f"Repair(none: hard statements contradict each other: {told(calculus, self.conflict.statements)})"
+        if not self.drop:
+            return "Repair(nothing to drop: the network is consistent)"
+        cost = f"cost {self.cost:g}{'' if self.optimal else ', perhaps not the least'}"
+        return f"Repair(drop {len(self.drop)} of {counted(n, 'statement')}, {cost}: {told(calculus, self.drop)})"
+
     def repaired(self) -> Network:
         """Return the network without the dropped statements.
 
@@ -99,6 +113,12 @@ def repair(net: Network, *, seed: int = 0, budget: float | None = None) -> Repai
         Seconds, after which the repair is completed greedily and not `Repair.optimal`; None is returned if even that
         cannot be decided in twice the time.
 
+    Raises
+    ------
+    Undecided
+        Nobody has shown that closure decides the calculus, and it refutes no more: whether the rest is consistent is not
+        known.
+
     Notes
     -----
     Statements of weight 0 cost nothing to drop, yet only those that have to go are dropped.
@@ -107,6 +127,7 @@ def repair(net: Network, *, seed: int = 0, budget: float | None = None) -> Repai
     ----------
     One conflict for each round; there can be exponentially many rounds.
     """
+    require_network(net)
     deadline = None if budget is None else time.perf_counter() + budget
     work = _Work(net, seed, deadline)
     dropped: set[int] = set()
@@ -152,6 +173,8 @@ class _Work:
             if isinstance(verdict, Consistent):
                 return found
             if not isinstance(verdict, Inconsistent):
+                if verdict.kind == "theory":
+                    raise undecided(self._net.calculus)
                 return found or None
             shrinker = Shrinker(self._net, self._seed, soft_only=True)
             shrunk = shrinker.conflict(rest, known=True)

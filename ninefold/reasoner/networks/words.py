@@ -1,4 +1,4 @@
-"""Relations in words, for derivations that people read.
+"""Relations and statements in words, for people to read.
 
 Examples
 --------
@@ -13,10 +13,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ninefold._wording import shortened
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ninefold.encodings.calculus import Calculus
 
-__all__ = ["phrase"]
+    from .statement import Statement
+
+__all__ = ["phrase", "spoken", "told"]
+
+_TOLD = 3
+"""Statements that a repr tells."""
 
 _VERBS = {
     "DC": ("disjoint", "not disjoint"),
@@ -50,6 +59,20 @@ def phrase(calculus: Calculus, a: str, mask: int, b: str) -> str:
     if excluded.bit_count() < mask.bit_count() and excluded.bit_count() <= 3:
         return f"{a} none of {', '.join(_VERBS.get(n, (n, n))[0] for n in calculus.names(excluded))} {b}"
     return f"{a} {_either([word for word, _ in words])} {b}"
+
+
+def spoken(calculus: Calculus, statement: Statement) -> str:
+    """Return a statement in words, with its label if it has one: "kitchen inside house (floor plan)"."""
+    label = f" ({statement.label})" if statement.label else ""
+    return f"{phrase(calculus, statement.a, statement.mask, statement.b)}{label}"
+
+
+def told(calculus: Calculus, statements: Sequence[Statement]) -> str:
+    """Return the first few statements in words, and how many more there are: what fits into a repr."""
+    shown = [shortened(spoken(calculus, s)) for s in statements[:_TOLD]]
+    if len(statements) > _TOLD:
+        shown.append(f"{len(statements) - _TOLD} more")
+    return "; ".join(shown)
 
 
 def _either(words: list[str]) -> str:

@@ -12,7 +12,7 @@ than relating two short cycles. Codes are those of `ninefold.reasoner.sets.relat
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scratch", "Stars", "all_pairs", "blocks", "cell_sets", "grouped", "listed_pairs"]
+__all__ = ["Scratch", "Stars", "all_pairs", "blocks", "grouped", "listed_pairs"]
 
 ALL_EIGHT = II | IB | IE | BI | BB | BE | EI | EB
 NONE = np.uint64(0)
@@ -63,7 +63,7 @@ class Scratch(NamedTuple):
     hit: NDArray[np.int64]
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def has_number(t, x, number):  # type: ignore[no-untyped-def]
     """Say whether a preorder number is in region x: the parity of a binary search in its interval ends."""
     begin = t.end_start[x]
@@ -80,7 +80,7 @@ def has_number(t, x, number):  # type: ignore[no-untyped-def]
     return ((a - begin) & 1) == 1
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def popcount(x):  # type: ignore[no-untyped-def]
     """Count the bits of a 64-bit word."""
     x = x - ((x >> np.uint64(1)) & np.uint64(0x5555555555555555))
@@ -89,7 +89,7 @@ def popcount(x):  # type: ignore[no-untyped-def]
     return np.int64((x * np.uint64(0x0101010101010101)) >> np.uint64(56))  # compilers know this form: one instruction
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def stamped_entry(t, w, cell):  # type: ignore[no-untyped-def]
     """Return the entry of the stamped set in a cell, or -1."""
     b = np.int64(w.slot[cell >> 6])
@@ -99,7 +99,7 @@ def stamped_entry(t, w, cell):  # type: ignore[no-untyped-def]
     return t.head[b] + popcount(t.mask[b] & (bit - np.uint64(1)))
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def transposed(bits):  # type: ignore[no-untyped-def]
     """Transpose the matrix of a code (dimensions not yet in it)."""
     kept = bits & (II | BB | EE | CURVE)
@@ -108,14 +108,14 @@ def transposed(bits):  # type: ignore[no-untyped-def]
     return kept | up | down
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def are_apart(t, x, y):  # type: ignore[no-untyped-def]
     """Say whether the signatures of two sets show that they share no vertex."""
     s = t.signature
     return not (s[x, 0] & s[y, 0] or s[x, 1] & s[y, 1] or s[x, 2] & s[y, 2] or s[x, 3] & s[y, 3])
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate region y to the stamped region x."""
     many_x = t.part_start[x + 1] - t.part_start[x] > 1
@@ -208,7 +208,7 @@ def region_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     return bits
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate the stamped set x to y, one of them a line (or point) and the other a region, as (line, region)."""
     line_is_x = t.dim[x] < 2
@@ -249,7 +249,7 @@ def line_region(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     return bits
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def line_line(t, w, x, y, apart):  # type: ignore[no-untyped-def]
     """Relate line or point y to the stamped line or point x."""
     bits = 0
@@ -286,7 +286,7 @@ def line_line(t, w, x, y, apart):  # type: ignore[no-untyped-def]
     return bits
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     """Relate set y to the stamped set x: the whole code of (x, y)."""
     dx = t.dim[x]
@@ -302,77 +302,97 @@ def one_pair(t, w, x, y, apart, tick):  # type: ignore[no-untyped-def]
     return bits | EE | dx << 10 | dy << 12
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def stamp(t, w, x):  # type: ignore[no-untyped-def]
     """Let the slots of set x point at its blocks."""
     for b in range(t.block_start[x], t.block_start[x + 1]):
         w.slot[t.block[b]] = b
 
 
-@kernel(inline="always")
+@kernel(_nrt=False, forceinline=True)
 def unstamp(t, w, x):  # type: ignore[no-untyped-def]
     """Let the slots of set x point at the block without cells again."""
     for b in range(t.block_start[x], t.block_start[x + 1]):
         w.slot[t.block[b]] = t.block.size
 
 
-@kernel
-def blocks(cell, start, n_cells):  # type: ignore[no-untyped-def]
-    """Find the blocks and patches each set touches, its entries being sorted by cell.
-
-    Returns block, mask, head, block_start, signature, run and run_start as in `Stars`.
-    """
-    n = start.size - 1
-    n_blocks = (n_cells >> 6) + 1
-    block = np.empty(cell.size, np.int32)
-    mask = np.zeros(cell.size, np.uint64)
-    head = np.zeros(cell.size + 1, np.int64)
-    block_start = np.zeros(n + 1, np.int64)
+def blocks(cell: NDArray[np.int32], start: NDArray[np.int64], n_cells: int) -> dict[str, NDArray[Any]]:
+    """Find the blocks and patches each set touches, its entries being sorted by cell; by their names in `Stars`."""
+    n, n_blocks = start.size - 1, (n_cells >> 6) + 1
+    owner = np.repeat(np.arange(n), np.diff(start))
+    its = cell >> 6
+    head = _first_of_runs(owner, its)
+    block, block_owner = its[head], owner[head]
+    bit = np.uint64(1) << (cell & 63).astype(np.uint64)
+    patch = block.astype(np.int64) * 256 // n_blocks
+    run = _first_of_runs(block_owner, patch)
     signature = np.zeros((n, 4), np.uint64)
-    run = np.empty(cell.size + 1, np.int64)
-    run_start = np.zeros(n + 1, np.int64)
-    end = 0
-    runs = 0
-    for x in range(n):
-        last_patch = -1
-        for i in range(start[x], start[x + 1]):
-            its = np.int64(cell[i] >> 6)
-            if end == block_start[x] or block[end - 1] != its:
-                patch = its * 256 // n_blocks
-                if patch != last_patch:
-                    signature[x, patch >> 6] |= np.uint64(1) << np.uint64(patch & 63)
-                    run[runs] = end
-                    runs += 1
-                    last_patch = patch
-                block[end] = its
-                head[end] = i
-                end += 1
-            mask[end - 1] |= np.uint64(1) << np.uint64(cell[i] & 63)
-        block_start[x + 1] = end
-        run_start[x + 1] = runs
-    run[runs] = end
-    filled = np.zeros(end + 1, np.uint64)  # the last one has no cells: where a slot points that no set has stamped
-    filled[:end] = mask[:end]
-    return block[:end].copy(), filled, head[: end + 1].copy(), block_start, signature, run[: runs + 1].copy(), run_start
+    touched = np.uint64(1) << (patch[run] & 63).astype(np.uint64)
+    np.bitwise_or.at(signature, (block_owner[run], patch[run] >> 6), touched)
+    return {
+        "block": block,
+        "mask": np.append(np.bitwise_or.reduceat(bit, head) if head.size else bit, np.uint64(0)),
+        "head": np.append(head, 0),
+        "block_start": _starts(block_owner, n),
+        "signature": signature,
+        "run": np.append(run, block.size),
+        "run_start": _starts(block_owner[run], n),
+    }
 
 
-@kernel
-def grouped(keys, order, n):  # type: ignore[no-untyped-def]
-    """Stable counting sort of `order` by ``keys[order]``, values below n: (sorted order, start (n + 1,))."""
-    start = np.zeros(n + 1, np.int64)
+def _first_of_runs(owner: NDArray[np.int64], value: NDArray[Any]) -> NDArray[np.int64]:
+    """Return where a run of equal values of one owner begins."""
+    if not owner.size:
+        return np.zeros(0, np.int64)
+    changed = (owner[1:] != owner[:-1]) | (value[1:] != value[:-1])
+    return np.flatnonzero(np.append(True, changed))
+
+
+def _starts(owner: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+    """Return where each owner's rows start, and their number."""
+    return np.append(0, np.cumsum(np.bincount(owner, minlength=n))).astype(np.int64)
+
+
+def grouped(
+    keys: NDArray[np.integer], n: int, order: NDArray[np.int64] | None = None
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Sort numbers stably by their keys: (sorted numbers, start (n + 1,)).
+
+    Parameters
+    ----------
+    keys
+        Integers below `n`.
+    order
+        The numbers to sort, rows of `keys`; all rows by default.
+    """
+    numbers = np.arange(keys.size) if order is None else order
+    counted = counting_sort.for_work(numbers.size // 20)  # numpy takes a twentieth of a microsecond for each
+    if counted is not counting_sort.plain:
+        start, result = np.zeros(n + 1, np.int64), np.empty(numbers.size, np.int64)
+        counted(keys.astype(np.int32, copy=False), numbers, start, result)
+        return result, start
+    key = keys[numbers]
+    result = numbers[np.argsort(key, kind="stable")]
+    return result, _starts(key.astype(np.int64), n)
+
+
+@kernel(_nrt=False)
+def counting_sort(keys, order, start, result):  # type: ignore[no-untyped-def]
+    """Sort `order` stably by ``keys[order]`` into `result`; `start` (n + 1,), zeros, becomes where each key starts."""
+    n = start.size - 1
     for k in order:
         start[keys[k] + 1] += 1
     for x in range(n):
         start[x + 1] += start[x]
-    fill = start[:-1].copy()
-    result = np.empty_like(order)
     for k in order:
-        result[fill[keys[k]]] = k
-        fill[keys[k]] += 1
-    return result, start
+        result[start[keys[k]]] = k
+        start[keys[k]] += 1
+    for x in range(n, 0, -1):  # every start was moved to the next one
+        start[x] = start[x - 1]
+    start[0] = 0
 
 
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=2)
 def listed_pairs(t, w, order, group, ys, codes):  # type: ignore[no-untyped-def]
     """Relate listed pairs: set x with ``ys[k]`` for k in order[group[x]:group[x + 1]]; codes (P,) are written."""
     for x in range(t.start.size - 1):
@@ -386,24 +406,7 @@ def listed_pairs(t, w, order, group, ys, codes):  # type: ignore[no-untyped-def]
         unstamp(t, w, x)
 
 
-@kernel
-def cell_sets(cell, start, n_cells):  # type: ignore[no-untyped-def]
-    """The inverted index: the sets in each cell, (owner, start (n_cells + 1,))."""
-    begin = np.zeros(n_cells + 1, np.int64)
-    for i in range(start[-1]):
-        begin[cell[i] + 1] += 1
-    for c in range(n_cells):
-        begin[c + 1] += begin[c]
-    fill = begin[:-1].copy()
-    owner = np.empty(start[-1], np.int32)
-    for x in range(start.size - 1):
-        for i in range(start[x], start[x + 1]):
-            owner[fill[cell[i]]] = x
-            fill[cell[i]] += 1
-    return owner, begin
-
-
-@kernel(_nrt=False)
+@kernel(_nrt=False, compile_seconds=2)
 def all_pairs(t, w, owner, begin, near, codes):  # type: ignore[no-untyped-def]
     """Relate every set to every set; codes (n, n) are written.
 

@@ -80,7 +80,7 @@ def number_parts(start, end, parent, part, seed, part_seed, n_parts):  # type: i
     return n_parts
 
 
-@kernel
+@kernel(compile_seconds=1)
 def region_stars(darts, offset, tail, rank, spokes, cell_start, number_of, room):  # type: ignore[no-untyped-def]
     """Build the entries of regions from their boundary darts.
 

@@ -17,19 +17,25 @@ from ninefold.mapping.sets import Line, Point, Region, same_map
 
 from . import _pairs, _stars
 from .relate import relate_code
+from .relation import converse_codes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
+    from ninefold._kernels import Kernel
     from ninefold.mapping import PlaneMap
     from ninefold.mapping.sets import Set
 
 __all__ = ["SetTable", "relate_all", "relate_pairs"]
 
 _SMALL = 300
+_PAIR_STEPS = 4
+"""Elementary steps to relate two sets in plain Python, on the average."""
 _MEMORY = 16 << 30
+_DART_STEPS = 5
+"""Elementary steps to enter one dart in a table of stars."""
 
 
 def relate_pairs(sets: Sequence[Set] | SetTable, pairs: ArrayLike) -> NDArray[np.uint16]:
@@ -75,14 +81,14 @@ def relate_pairs(sets: Sequence[Set] | SetTable, pairs: ArrayLike) -> NDArray[np
     if int(index.min()) < 0 or int(index.max()) >= len(sets):
         wrong = int(index.min()) if int(index.min()) < 0 else int(index.max())
         raise BadInput(f"pairs must hold rows of sets, 0 to {len(sets) - 1}; found {wrong}")
-    if not isinstance(sets, SetTable) and len(index) < _SMALL:
+    if not isinstance(sets, SetTable) and _is_small(_pairs.listed_pairs, len(index)):
         _one_map(sets)
         return np.array([relate_code(sets[i], sets[j]) for i, j in index.tolist()], np.uint16)
     table = sets if isinstance(sets, SetTable) else SetTable.build(sets)
     xs, ys = (np.ascontiguousarray(index[:, k], dtype=np.int32) for k in (0, 1))
-    group = _pairs.grouped.compiled  # by y, then stably by x: partners are streamed in the order they lie in memory
-    by_y, _ = group(ys, np.arange(len(index), dtype=np.int64), len(table))
-    order, start = group(xs, by_y, len(table))
+    # by y, then stably by x: partners are streamed in the order they lie in memory
+    by_y, _ = _pairs.grouped(ys, len(table))
+    order, start = _pairs.grouped(xs, len(table), by_y)
     codes = np.empty(len(index), np.uint16)
     _pairs.listed_pairs.compiled(table.stars, table.scratch(), order, start, ys, codes)
     return codes
@@ -110,12 +116,14 @@ def relate_all(sets: Sequence[Set] | SetTable) -> NDArray[np.uint16]:
         raise TooLarge(
             f"all relations of {n:,} sets take {2 * n * n / 2**30:,.0f} GiB; relate the pairs you need with relate_pairs"
         )
-    if not isinstance(sets, SetTable) and n * n < _SMALL:
+    if not isinstance(sets, SetTable) and _is_small(_pairs.all_pairs, n * (n + 1) // 2):
         _one_map(sets)
-        return np.array([[relate_code(x, y) for y in sets] for x in sets], np.uint16).reshape(n, n)
+        return _all_plain(sets)
     table = sets if isinstance(sets, SetTable) else SetTable.build(sets)
     stars = table.stars
-    owner, begin = _pairs.cell_sets.compiled(stars.cell, stars.start, table.n_cells)
+    # the sets in each cell: an inverted index
+    entry, begin = _pairs.grouped(stars.cell, table.n_cells)
+    owner = np.repeat(np.arange(n, dtype=np.int32), np.diff(stars.start))[entry]
     codes = np.empty((n, n), np.uint16)
     _pairs.all_pairs.compiled(stars, table.scratch(), owner, begin, np.full(n, -1, np.int64), codes)
     return codes
@@ -169,9 +177,9 @@ class SetTable:
         take, start = _regrouped(sizes, order)
         take_parts, part_start = _regrouped(parts, order)
         cell = place[np.concatenate([chunk[0] for chunk in chunks])[take]]
-        by_cell, _ = _pairs.grouped.compiled(cell, np.arange(cell.size), n_cells)
+        by_cell, _ = _pairs.grouped(cell, n_cells)
         owner = np.repeat(np.arange(n, dtype=np.int32), np.diff(start))
-        row, _ = _pairs.grouped.compiled(owner, by_cell, n)  # each set's entries, sorted by cell
+        row, _ = _pairs.grouped(owner, n, by_cell)  # each set's entries, sorted by cell
         cell = cell[row]
         sectors, darts, part = (np.concatenate([chunk[k] for chunk in chunks])[take][row] for k in (1, 2, 3))
         seed = np.concatenate([chunk[5] for chunk in chunks])[take_parts]
@@ -179,7 +187,6 @@ class SetTable:
         seed[part_start[points]] = number_at[cell[start[points]]]
         ends = [x.ends if isinstance(x, Region) else _NO_ENDS for x in sets]
         is_end = np.concatenate([[0], np.cumsum(sectors == 3)])
-        block, mask, head, block_start, signature, run, run_start = _pairs.blocks.compiled(cell, start, n_cells)
         stars = _pairs.Stars(
             cell=cell,
             star=np.stack([sectors, darts], axis=1),
@@ -193,19 +200,27 @@ class SetTable:
             dim=dim,
             n_darts=np.array([2 * len(x.edges) if isinstance(x, Line) else 0 for x in sets], np.int64),
             n_ends=np.where(dim < 2, is_end[start[1:]] - is_end[start[:-1]], 0).astype(np.int64),
-            signature=signature,
-            block=block,
-            mask=mask,
-            head=head,
-            block_start=block_start,
-            run=run,
-            run_start=run_start,
+            **_pairs.blocks(cell, start, n_cells),
         )
         return cls(n_cells, stars)
 
 
 _NO_ENDS = np.zeros(0, np.int32)
 _Chunk = tuple["NDArray[np.generic]", ...]
+
+
+def _is_small(kernel: Kernel[..., None], n_pairs: int) -> bool:
+    """Say whether relating pairs one by one is done before a table is made and a kernel is ready."""
+    return n_pairs < _SMALL or kernel.for_work(_PAIR_STEPS * n_pairs) is kernel.plain
+
+
+def _all_plain(sets: Sequence[Set]) -> NDArray[np.uint16]:
+    n = len(sets)
+    codes = np.empty((n, n), np.uint16)
+    for i, x in enumerate(sets):
+        codes[i, i:] = [relate_code(x, y) for y in sets[i:]]
+        codes[i:, i] = converse_codes(codes[i, i:])
+    return codes
 
 
 def _one_map(sets: Sequence[Set]) -> PlaneMap:
@@ -229,7 +244,7 @@ def _places(
     if plane.outer < 0:
         return np.arange(n_cells, dtype=np.int32), np.zeros(n_cells, np.int32)
     number_at = np.repeat(number_of[plane.first_dart], np.diff(cell_start))
-    order, _ = _pairs.grouped.compiled(number_at, np.arange(n_cells), plane.n_faces)
+    order, _ = _pairs.grouped(number_at, plane.n_faces)
     place = np.empty(n_cells, np.int32)
     place[order] = np.arange(n_cells, dtype=np.int32)
     return place, number_at[order]
@@ -258,7 +273,7 @@ def _lines(plane: PlaneMap, lines: Sequence[Line], cell_start: NDArray[np.int64]
     edges = np.fromiter((e for x in lines for e in x.edges), np.int64)
     offset = np.concatenate([[0], np.cumsum([len(x.edges) for x in lines])]).astype(np.int64)
     room = int(np.diff(cell_start)[plane.tail[np.concatenate([2 * edges, 2 * edges + 1])]].sum())
-    build = _stars.line_stars.compiled
+    build = _stars.line_stars.for_work(_DART_STEPS * edges.size)
     built = build(edges, offset, plane.tail, plane.rank, cell_start, number_of, plane.first_dart, room)
     return _trimmed(built)
 
@@ -269,7 +284,7 @@ def _regions(
     darts = np.concatenate([np.zeros(0, np.int64), *[x.darts for x in regions]])
     offset = np.concatenate([[0], np.cumsum([x.darts.size for x in regions])]).astype(np.int64)
     room = int(np.diff(cell_start)[plane.tail[darts]].sum())
-    build = _stars.region_stars.compiled
+    build = _stars.region_stars.for_work(_DART_STEPS * darts.size)
     built = build(darts, offset, plane.tail, plane.rank, plane.spokes, cell_start, number_of, room)
     return _trimmed(built)
 

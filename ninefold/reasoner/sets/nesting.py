@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
 from ninefold.mapping.sets import Region
 
@@ -61,7 +62,7 @@ def containment_tree(regions: Mapping[str, Region] | Sequence[Region]) -> Any:
     named = dict(pairs)
     for name, region in named.items():
         if not isinstance(region, Region):
-            raise BadInput(f"containment_tree takes regions; {name!r} is {region!r}")
+            raise BadInput(f"containment_tree takes regions; {quoted(name)} is {quoted(region)}")
     tree = nx.DiGraph()
     if not named:
         return tree

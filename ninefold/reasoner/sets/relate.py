@@ -17,7 +17,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput
+from ninefold.mapping.numbering import Face
 from ninefold.mapping.sets import Line, Point, Region, same_map
 
 from .relation import BB, BE, BI, CURVE, EB, EE, EI, IB, IE, II, X_SHIFT, Y_SHIFT, Relation, converse_code
@@ -64,7 +66,7 @@ def relate(x: Set, y: Set) -> Relation:
     """
     for given in (x, y):
         if not isinstance(given, Point | Line | Region):
-            raise BadInput(f"relate takes points, lines and regions of a map, not {given!r}")
+            raise BadInput(f"relate takes points, lines and regions of a map, not {quoted(given)}")
     same_map(x, y)
     return Relation(relate_code(x, y))
 
@@ -109,7 +111,7 @@ def _holds(region: Region, vertex: int) -> bool:
     """Say whether a vertex off the region's boundary lies in it."""
     plane = region.plane
     dart = int(plane.first_dart[vertex])
-    return dart >= 0 and region.has_face(int(plane.face_of[dart]))
+    return dart >= 0 and region.has_face(Face(int(plane.face_of[dart])))
 
 
 def _line_line(x: Line, y: Line) -> int:
@@ -185,11 +187,11 @@ def _region_region(x: Region, y: Region) -> int:
     if len(x.rims) > 1 or not shared:
         for rim, dart in zip(x.rims, x.rim_darts, strict=True):
             if rim.isdisjoint(shared):
-                inside = y.has_face(int(x.plane.face_of[dart]))
+                inside = y.has_face(Face(int(x.plane.face_of[dart])))
                 bits |= II | BI | EI if inside else IE | BE
     if len(y.rims) > 1 or not shared:
         for rim, dart in zip(y.rims, y.rim_darts, strict=True):
             if rim.isdisjoint(shared):
-                inside = x.has_face(int(x.plane.face_of[dart]))
+                inside = x.has_face(Face(int(x.plane.face_of[dart])))
                 bits |= II | IB | IE if inside else EI | EB
     return bits

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
 from ninefold.errors import BadInput, UnknownName
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ RCC8_OF_NAME = {
     "contains": "NTPPi",
     "covers": "TPPi",
 }
+_RCC8_WORDS = frozenset(word.lower() for word in RCC8_OF_NAME.values())
 _CONVERSE_NAME = {"contains": "inside", "inside": "contains", "covers": "coveredBy", "coveredBy": "covers"}
 
 
@@ -105,6 +107,11 @@ class Relation:
     code
         The packed nine-intersection; see the module's text.
 
+    Raises
+    ------
+    BadInput
+        On ``relation == "inside"``, for any text: a relation is more than its name, so say which of its texts is meant.
+
     Examples
     --------
     >>> from ninefold.reasoner import Relation
@@ -127,13 +134,13 @@ class Relation:
             If no two sets of these dimensions have that matrix of dimensions.
         """
         if len(text) != 9 or set(text.upper()) - set("F012") or not all(d in (0, 1, 2) for d in dimensions):
-            raise BadInput(f"{text!r} is no DE-9IM matrix: nine letters of F, 0, 1, 2")
+            raise BadInput(f"{quoted(text)} is no DE-9IM matrix: nine letters of F, 0, 1, 2")
         bits = sum(1 << k for k, letter in enumerate(text.upper()) if letter != "F")
         base = bits | dimensions[0] << X_SHIFT | dimensions[1] << Y_SHIFT
         for code in (base, base | CURVE):
             if de9im_of_code(code) == text.upper():
                 return cls(code)
-        raise BadInput(f"{text!r} is not the matrix of sets of dimensions {dimensions[0]} and {dimensions[1]}")
+        raise BadInput(f"{quoted(text)} is not the matrix of sets of dimensions {dimensions[0]} and {dimensions[1]}")
 
     @property
     def matrix(self) -> NDArray[np.bool_]:
@@ -164,6 +171,21 @@ class Relation:
     def converse(self) -> Relation:
         """The relation of Y to X."""
         return Relation(converse_code(self.code))
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Relation):
+            return self.code == other.code
+        if isinstance(other, str):
+            matrix = len(other) == 9 and not set(other.upper()) - set("F012")
+            word = "de9im" if matrix else "rcc8" if other.lower() in _RCC8_WORDS else "name"
+            raise BadInput(
+                f"a relation is not a text such as {quoted(other)}; compare one of its texts: "
+                f"relation.{word} == {quoted(other)}"
+            )
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.code)
 
     def _has(self, *cells: int) -> bool:
         return any(self.code & cell for cell in cells)
