@@ -26,8 +26,11 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .bearing_rigidity import Rigidity, rigidity
     from .drawing import Drawing
     from .layouts import LAYOUTS, draw
+    from .methods.compass import compass
+    from .methods.relax import relax
     from .methods.schnyder import schnyder
     from .methods.tutte import tutte
     from .oracle import Disagreement, Report, verify, verify_geometry
@@ -44,11 +47,15 @@ __all__ = [
     "Disagreement",
     "Drawing",
     "Report",
+    "Rigidity",
     "TrueShapes",
+    "compass",
     "draw",
     "drawing_problems",
     "random_sets",
     "realize",
+    "relax",
+    "rigidity",
     "sample_pairs",
     "schnyder",
     "shrink",
@@ -62,8 +69,11 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "bearing_rigidity": ("Rigidity", "rigidity"),
         "drawing": ("Drawing",),
         "layouts": ("LAYOUTS", "draw"),
+        "methods.compass": ("compass",),
+        "methods.relax": ("relax",),
         "methods.schnyder": ("schnyder",),
         "methods.tutte": ("tutte",),
         "oracle": ("Disagreement", "Report", "verify", "verify_geometry"),

@@ -1,15 +1,16 @@
 """What the compass fixes in a map, and which headings the rest contradicts.
 
-A leg that was walked straight has one direction, its heading. Where the directions fix a part of the map (it is *parallel-rigid*,
-see `ninefold.mapping.rigidity`) the proportions of that part in a compass drawing are measured; everywhere else they are only
-evened out. Where there are more directions than are needed they test each other: the part is fitted to all of them, those that
-fit worst counting less and less, and a leg that still misses its heading by far more than the others is named. It may have been
-curved, its heading may be wrong, or it may join two places of which one was taken for another: so it is a warning, never a
-refusal.
+A leg that was walked straight has one direction, its heading. Where the directions fix a part of the map (it is
+*parallel-rigid*, see `ninefold.mapping.rigidity`) the proportions of that part in a compass drawing are measured;
+everywhere else they are only evened out. Where there are more directions than are needed they test each other: the part
+is fitted to all of them, those that fit worst counting less and less, and a leg that still misses its heading by far
+more than the others is named. It may have been curved, its heading may be wrong, or it may join two places of which one
+was taken for another: so it is a warning, never a refusal.
 
 References
 ----------
-W. Baarda, A testing procedure for use in geodetic networks, 1968 (blunders by residuals). P. J. Huber, Robust Statistics, 1981.
+W. Baarda, A testing procedure for use in geodetic networks, 1968 (blunders by residuals). P. J. Huber, Robust
+Statistics, 1981.
 """
 
 from __future__ import annotations
@@ -59,8 +60,8 @@ class Rigidity:
     plane
         The map.
     part
-        (E,) int64: the parallel-rigid part of every straight leg, -1 for a leg that is curved, a loop, or a tether. Parts are
-        numbered from the largest.
+        (E,) int64: the parallel-rigid part of every straight leg, -1 for a leg that is curved, a loop, or a tether.
+        Parts are numbered from the largest.
     sizes
         (parts,) int64 number of legs of each part.
     freedom
@@ -105,8 +106,8 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT) -> Rigidity:
     Parameters
     ----------
     straight
-        Radians of net rotation up to which a leg is taken to be straight. A leg that bends and bends back is taken to be straight
-        too: nothing in the walk tells.
+        Radians of net rotation up to which a leg is taken to be straight. A leg that bends and bends back is taken to
+        be straight too: nothing in the walk tells.
 
     Raises
     ------
@@ -211,7 +212,7 @@ def _missed(pieces: Pieces, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _redundancy(pieces: Pieces, points: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return, for each heading, the share of an error in it that shows as a miss, (k,) in [0, 1]; estimated by random probes.
+    """Return, for each heading, the share of an error in it that shows as a miss, (k,) in [0, 1]; by random probes.
 
     It is the diagonal of 1 - A (A' A)^-1 A' for the directions' equations A at the picture.
     """
@@ -232,4 +233,4 @@ def _redundancy(pieces: Pieces, points: NDArray[np.float64], rows: NDArray[np.in
     factor = splu((normal + ridge * sp.eye_array(normal.shape[0])).tocsc(), permc_spec="MMD_AT_PLUS_A")
     signs = np.random.default_rng(0).choice([-1.0, 1.0], (rows.size, _PROBES))
     seen = A @ factor.solve(A.T @ signs)
-    return np.clip(1 - (signs * seen).mean(axis=1), 0.0, 1.0)
+    return np.asarray(np.clip(1 - (signs * seen).mean(axis=1), 0.0, 1.0))

@@ -9,6 +9,8 @@ from ninefold._wording import quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, PlaneMap, Point, Region
 
+from .methods.compass import compass
+from .methods.relax import relax
 from .methods.schnyder import schnyder
 from .methods.tutte import tutte
 
@@ -24,8 +26,24 @@ __all__ = ["DEFAULT_LAYOUT", "LAYOUTS", "draw"]
 DEFAULT_LAYOUT = "auto"
 """The layout of pictures, from Python and from the command line, unless another is asked for."""
 
-LAYOUTS: dict[str, Callable[[PlaneMap], Drawing]] = {"auto": tutte, "tutte": tutte, "schnyder": schnyder}
-"""Layouts by name. "auto" is the best for people that the map allows: today "tutte", which falls back to "schnyder"."""
+
+def _best(plane: PlaneMap) -> Drawing:
+    """Draw a map as the place looks where headings tell, else with every vertex amid its neighbours."""
+    return tutte(plane) if plane.heading is None else compass(plane)
+
+
+def _relaxed(plane: PlaneMap) -> Drawing:
+    return relax(tutte(plane))
+
+
+LAYOUTS: dict[str, Callable[[PlaneMap], Drawing]] = {
+    "auto": _best,
+    "compass": compass,
+    "tutte": tutte,
+    "relaxed": _relaxed,
+    "schnyder": schnyder,
+}
+"""Layouts by name. "auto" is the best for people that the map allows: "compass" where it has headings, else "tutte"."""
 
 
 def draw(
@@ -41,8 +59,9 @@ def draw(
     plane
         The map.
     layout
-        "auto" (the best there is for people), "tutte" (every vertex amid its neighbours; where that is too fine for
-        floating point the Schnyder drawing is given, and the notes say so) or "schnyder" (integer grid, any size).
+        "auto" (the best there is for people: "compass" where the map has headings, else "tutte"), "compass" (as the place
+        looks, from headings), "tutte" (every vertex amid its neighbours), "relaxed" (wide angles and even lengths) or
+        "schnyder" (integer grid, any size). Where a layout has to fall back to another, the drawing's notes say so.
     highlight
         Sets to colour: a mapping from legend text to set, or sets alone, which the legend calls X, Y, Z, ...
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from .drawing import Drawing
 
-__all__ = ["crossing_pieces", "drawing_problems", "first_meeting", "orientation"]
+__all__ = ["crossing_pieces", "drawing_problems", "first_meeting", "orientation", "wrong_rotations"]
 
 _SHOWN = 3
 
@@ -199,11 +199,16 @@ def _piece_ends(drawing: Drawing) -> NDArray[np.int64]:
 
 
 def _rotations(drawing: Drawing) -> list[str]:
-    """Check with exact signs that the darts at every vertex turn counter-clockwise once around in the map's order."""
+    names = drawing.plane.vertex_names
+    return [f"the rotation at vertex {names[v]!r} is not the map's" for v in wrong_rotations(drawing)[:_SHOWN].tolist()]
+
+
+def wrong_rotations(drawing: Drawing) -> NDArray[np.int64]:
+    """Return the vertices at which the darts do not turn counter-clockwise once around in the map's order; exact signs."""
     plane = drawing.plane
     real = np.flatnonzero(~np.repeat(plane.tether, 2))
     if not real.size:
-        return []
+        return np.zeros(0, np.int64)
     after = strip_tethers(plane.next_ccw, plane.tether)[real]
     start = drawing.points[plane.tail]
     towards = start[np.arange(start.shape[0]) ^ 1].copy()
@@ -215,8 +220,7 @@ def _rotations(drawing: Drawing) -> list[str]:
     sign = orientation(start[real], towards[real], towards[after])
     rises = np.where(lower[real] == lower[after], sign > 0, lower[after])
     turns = np.bincount(plane.tail[real][~rises], minlength=plane.n_vertices)
-    wrong = np.flatnonzero((turns != 1) & (plane.degree > 0))
-    return [f"the rotation at vertex {plane.vertex_names[v]!r} is not the map's" for v in wrong[:_SHOWN].tolist()]
+    return np.flatnonzero((turns != 1) & (plane.degree > 0))
 
 
 def _recomputed(drawing: Drawing) -> list[str]:

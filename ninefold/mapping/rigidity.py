@@ -1,23 +1,24 @@
 """What directions alone fix: the parallel-rigid parts of a graph.
 
-Let every edge of a graph in the plane have a known direction. Some parts then have a shape, up to place and size: whoever draws
-them with these directions draws the same figure. A triangle is such a part, a rectangle is not (its two sides may have any
-lengths), a rectangle with a diagonal is. These parts are *parallel-rigid*; every edge lies in exactly one largest of them, perhaps
-alone.
+Let every edge of a graph in the plane have a known direction. Some parts then have a shape, up to place and size:
+whoever draws them with these directions draws the same figure. A triangle is such a part, a rectangle is not (its two
+sides may have any lengths), a rectangle with a diagonal is. These parts are *parallel-rigid*; every edge lies in
+exactly one largest of them, perhaps alone.
 
-For directions in general position it is only a matter of counting: n vertices carry at most 2 n - 3 independent directions, and
-a part is rigid where some of its subsets of edges reach that with no smaller part exceeding it (Laman's count; Whiteley showed
-that lengths and directions obey the same one in the plane). The *pebble game* does the count: every vertex has two pebbles, an
-independent edge takes one from an end, and an edge is independent if four can be brought to its ends. An edge that is not
-independent is *redundant*: its direction follows from others, so it tests them.
+For directions in general position it is only a matter of counting: n vertices carry at most 2 n - 3 independent
+directions, and a part is rigid where some of its subsets of edges reach that with no smaller part exceeding it (Laman's
+count; Whiteley showed that lengths and directions obey the same one in the plane). The *pebble game* does the count:
+every vertex has two pebbles, an independent edge takes one from an end, and an edge is independent if four can be
+brought to its ends. An edge that is not independent is *redundant*: its direction follows from others, so it tests
+them.
 
 Directions in special position, such as many parallel streets, can fix less than the count says; never more.
 
 References
 ----------
-G. Laman, On graphs and rigidity of plane skeletal structures, 1970. W. Whiteley, Some matroids from discrete applied geometry,
-1996. D. J. Jacobs and B. Hendrickson, An algorithm for two-dimensional rigidity percolation: the pebble game, 1997. A. Lee and
-I. Streinu, Pebble game algorithms and sparse graphs, 2008.
+G. Laman, On graphs and rigidity of plane skeletal structures, 1970. W. Whiteley, Some matroids from discrete applied
+geometry, 1996. D. J. Jacobs and B. Hendrickson, An algorithm for two-dimensional rigidity percolation: the pebble game,
+1997. A. Lee and I. Streinu, Pebble game algorithms and sparse graphs, 2008.
 """
 
 from __future__ import annotations
@@ -73,7 +74,8 @@ def rigid_parts(ends: ArrayLike) -> RigidParts:
 
     Notes
     -----
-    Complexity: O(V^2) at worst; nearly linear on maps, where searches for pebbles stay near or end in parts known to be rigid.
+    Complexity: O(V^2) at worst; nearly linear on maps, where searches for pebbles stay near or end in parts known to be
+    rigid.
 
     Examples
     --------
@@ -212,8 +214,8 @@ def all_paid(out, start, stamp, mark, found, stack):  # type: ignore[no-untyped-
 def collect_parts(pairs, out):  # type: ignore[no-untyped-def]
     """Return the part of every edge, numbered by an edge of it.
 
-    With three pebbles on the ends of an edge, the part that the edge is in is what can be reached from the ends or reaches only
-    them, if no other vertex with a free pebble is reached; else the edge is alone.
+    With three pebbles on the ends of an edge, the part that the edge is in is what can be reached from the ends or
+    reaches only them, if no other vertex with a free pebble is reached; else the edge is alone.
     """
     n, n_edges = out.shape[0], pairs.shape[0]
     first = np.zeros(n + 1, np.int64)

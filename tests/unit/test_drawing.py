@@ -102,7 +102,7 @@ def test_an_equal_map_made_twice_is_the_same_map():
 def test_unknown_layouts_sizes_and_arrays_are_refused(tmp_path):
     with pytest.raises(BadInput, match="did you mean 'tutte'"):
         draw(SQUARE, layout="tute")
-    with pytest.raises(BadInput, match="the layouts are auto, schnyder, tutte"):
+    with pytest.raises(BadInput, match="the layouts are auto, compass, relaxed, schnyder, tutte"):
         draw(SQUARE, layout="spring")
     with pytest.raises(TooLarge, match="357913943"):
         check_size(400_000_000)
@@ -227,7 +227,7 @@ def test_one_default_layout_for_python_and_the_command_line():
     from ninefold.cli.pictures import draw as command
 
     assert inspect.signature(command).parameters["layout"].default == DEFAULT_LAYOUT == "auto"
-    assert draw(SQUARE).layout == draw(SQUARE, layout="auto").layout == "tutte"
+    assert draw(SQUARE).layout == draw(SQUARE, layout="auto").layout == "compass"
     assert draw(SQUARE).to_svg() == draw(SQUARE, layout="tutte").to_svg()
 
 

@@ -1,8 +1,8 @@
 """The relaxed drawing: the same map with wider angles and lengths that are more alike; headings are not needed.
 
-The directions of a given drawing are opened, so that no two edges leave a vertex at a narrow angle, and then taken for headings:
-`ninefold.layout.shaping` finds the plane picture that they fix, in which dead ends that were squeezed into a corner are as long as
-others. From there every step makes lengths more alike and triangles better, and folds nothing.
+The directions of a given drawing are opened, so that no two edges leave a vertex at a narrow angle, and then taken for
+headings: `ninefold.layout.shaping` finds the plane picture that they fix, in which dead ends that were squeezed into a
+corner are as long as others. From there every step makes lengths more alike and triangles better, and folds nothing.
 """
 
 from __future__ import annotations

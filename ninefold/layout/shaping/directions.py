@@ -1,15 +1,16 @@
 """The shape that directions fix: points whose differences point along the chords, by reweighted least squares.
 
-A direction fixes no length, so every piece also pulls, weakly, towards a positive length along its chord; the weights are then
-set anew from the picture so far, so that what counts is the angle by which a piece misses its chord, whatever its length.
-Where the directions fix the shape (parallel rigidity) the weak pull changes nothing; elsewhere it evens lengths out.
+A direction fixes no length, so every piece also pulls, weakly, towards a positive length along its chord; the weights
+are then set anew from the picture so far, so that what counts is the angle by which a piece misses its chord, whatever
+its length. Where the directions fix the shape (parallel rigidity) the weak pull changes nothing; elsewhere it evens
+lengths out.
 
 The solution need not be plane, nor keep the rotation: that is for `ninefold.layout.shaping.untangle`.
 
 References
 ----------
-W. Whiteley, Some matroids from discrete applied geometry, 1996 (parallel rigidity). S. Zhao and D. Zelazo, Bearing rigidity and
-almost global bearing-only formation stabilization, IEEE TAC 61, 2016 (bearing-based network localization).
+W. Whiteley, Some matroids from discrete applied geometry, 1996 (parallel rigidity). S. Zhao and D. Zelazo, Bearing
+rigidity and almost global bearing-only formation stabilization, IEEE TAC 61, 2016 (bearing-based network localization).
 """
 
 from __future__ import annotations
@@ -76,9 +77,7 @@ class FollowHeadings:
         How lengths that were not measured are treated.
     """
 
-    def __init__(
-        self, pieces: Pieces, *, trust: NDArray[np.float64] | None = None, lengths: Lengths = LEGIBLE
-    ) -> None:
+    def __init__(self, pieces: Pieces, *, trust: NDArray[np.float64] | None = None, lengths: Lengths = LEGIBLE) -> None:
         self._pieces = pieces
         self._lengths = lengths
         self._trust = np.ones(pieces.chord.size) if trust is None else trust

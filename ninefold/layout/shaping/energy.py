@@ -38,7 +38,7 @@ GROW = 2.0
 
 
 class Pull(Protocol):
-    """What pieces are drawn to: for each piece A (2, 2) and g (2,), with the energy D' A D / 2 - g' D of its difference D."""
+    """What pieces are drawn to: for each piece A (2, 2), g (2,), and the energy D' A D / 2 - g' D of its difference D."""
 
     def terms(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return A (M, 2, 2) and g (M, 2) for a picture."""
@@ -53,9 +53,7 @@ class KeepPicture:
         t = step / np.maximum(length, 1e-12)[:, None]
         n = np.stack([-t[:, 1], t[:, 0]], axis=1)
         weight = np.where(pieces.real, 1.0, 0.01) / np.maximum(length, smallest) ** 2
-        self._blocks = weight[:, None, None] * (
-            9 * n[:, :, None] * n[:, None, :] + 0.25 * t[:, :, None] * t[:, None, :]
-        )
+        self._blocks = weight[:, None, None] * (9 * n[:, :, None] * n[:, None, :] + 0.25 * t[:, :, None] * t[:, None, :])
         self._wanted = np.einsum("kij,kj->ki", self._blocks, step)
 
     def terms(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -159,8 +157,8 @@ def damped(mesh: Mesh, step: NDArray[np.float64], *, keep: float, rounds: int = 
 
     Notes
     -----
-    After some rounds of halving, points that would still fold a triangle stand still, so triangles that were turned right stay
-    so: with a frame that stands still, a plane picture stays plane.
+    After some rounds of halving, points that would still fold a triangle stand still, so triangles that were turned
+    right stay so: with a frame that stands still, a plane picture stays plane.
     """
     good = ~mesh.bad()
     triangles, floor = mesh.triangles[good], keep * mesh.areas()[good]

@@ -1,9 +1,9 @@
 """Faces cut into triangles inside a frame, while the picture may still be tangled.
 
-The map, in a picture of it, is put into a convex frame that stands still. Edges of the map are fixed; the other sides of the
-triangles, *diagonals*, are for the mesh to choose: they are cut from the picture as it is (ears first), and flipped whenever
-that makes the worse of two triangles better. Where every triangle is turned the right way round, the picture is plane and has
-the map's rotation and faces: that is what untangling works towards.
+The map, in a picture of it, is put into a convex frame that stands still. Edges of the map are fixed; the other sides
+of the triangles, *diagonals*, are for the mesh to choose: they are cut from the picture as it is (ears first), and
+flipped whenever that makes the worse of two triangles better. Where every triangle is turned the right way round, the
+picture is plane and has the map's rotation and faces: that is what untangling works towards.
 
 A diagonal never doubles a side that is there: two triangles between the same three vertices can never both be turned right.
 """
@@ -199,9 +199,9 @@ def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     d = before[q ^ 1]
     while d != p:
         w = tail[d]
-        if w not in (a, b, c) and west <= points[w, 0] <= east and south <= points[w, 1] <= north:
-            if quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
-                return True
+        near = w not in (a, b, c) and west <= points[w, 0] <= east and south <= points[w, 1] <= north
+        if near and quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
+            return True
         d = before[d ^ 1]
     return False
 

@@ -32,8 +32,8 @@ def plane_picture(pieces: Pieces) -> tuple[Mesh, NDArray[np.float64]] | None:
 
     Returns
     -------
-    The mesh, whose points draw the map plane and with its own rotation and outer face as far as floating point tells, and the
-    shape that the directions alone gave; None where no such picture was found.
+    The mesh, whose points draw the map plane and with its own rotation and outer face as far as floating point tells,
+    and the shape that the directions alone gave; None where no such picture was found.
 
     Notes
     -----

@@ -1,8 +1,8 @@
 """The straight pieces of a map and the directions that headings give them.
 
-Loops and parallel edges are bent (`ninefold.layout.methods.subdivide`), so that every piece can be a straight segment. A piece
-is expected to point along its *chord*: piece j of the k pieces of an edge along ``heading + turn (2 j + 1) / (2 k)``, which for a
-straight edge is its heading and for an evenly curved one the direction of the chord.
+Loops and parallel edges are bent (`ninefold.layout.methods.subdivide`), so that every piece can be a straight segment.
+A piece is expected to point along its *chord*: piece j of the k pieces of an edge along ``heading + turn (2 j + 1) / (2
+k)``, which for a straight edge is its heading and for an evenly curved one the direction of the chord.
 
 Chords forget how an edge leaves its vertex, so two of them can come in another order than the map's rotation. `spread` turns
 them, each as little as it can, until the rotation holds with a least angle at every vertex.
@@ -111,7 +111,9 @@ def pieces_of(
     length = np.full(edge.size, np.nan)
     if plane.heading is None or plane.turn is None:
         nothing = np.zeros(edge.size)
-        return Pieces(simple, tail, head, edge, nothing, np.zeros(simple.tail.size), np.zeros(edge.size, np.bool_), real, length)
+        return Pieces(
+            simple, tail, head, edge, nothing, np.zeros(simple.tail.size), np.zeros(edge.size, np.bool_), real, length
+        )
     start, turn = plane.heading[0::2], plane.turn
     chord = start[edge] + turn[edge] * (2 * place + 1) / (2 * count[edge])
     if chords is not None:
@@ -132,8 +134,8 @@ def pieces_of(
 def spread(pieces: Pieces, *, least: float = LEAST_ANGLE) -> Pieces:
     """Turn the chords as little as needed for the map's rotation to hold, with a least angle at every vertex.
 
-    Where two neighbours at a vertex are too close, or in the wrong order, each turns by a share of what is lacking; the rounds
-    end when nothing is lacking, or after a fixed number of them where a vertex is too crowded.
+    Where two neighbours at a vertex are too close, or in the wrong order, each turns by a share of what is lacking; the
+    rounds end when nothing is lacking, or after a fixed number of them where a vertex is too crowded.
     """
     tail, after = pieces.simple.tail, pieces.simple.next_ccw
     dart = np.arange(tail.size)

@@ -4,9 +4,9 @@ The rounds of `untangle` look at the triangles that are flat or folded, let the 
 that makes the energy less and folds nothing that is right. Diagonals are flipped in every round; every few rounds the faces
 are cut afresh from the picture as it has become, since those cut from a tangled one can be in the way.
 
-Where that gets stuck, `mend` forgets the picture around what is folded, sets each point there amid its neighbours in the mesh
-(which folds nothing inside a convex surrounding, and little inside another), and untangles again; around more and more, in the
-end everywhere but the frame, which is convex.
+Where that gets stuck, `mend` forgets the picture around what is folded, sets each point there amid its neighbours in
+the mesh (which folds nothing inside a convex surrounding, and little inside another), and untangles again; around more
+and more, in the end everywhere but the frame, which is convex.
 
 References
 ----------
