@@ -4,12 +4,16 @@ Bounded faces stand on a tinted ground, so the outer face is the paper. Highligh
 given: regions tinted, hatched and outlined (dashed after the first, so that a shared outline shows both), lines broad,
 points as dots. Names appear on small maps only; edges and vertices carry tool tips. A Schnyder drawing lives in a right
 triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
+
+By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
+the rest contradicts broad and on top.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,15 +23,20 @@ from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
 from .labels import place_labels, text_width
+from .leg_classes import leg_classes, leg_tip, rigidity_of
 from .shapes import region_rings
 from .theme import ROLES, THEMES, style_sheet
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ninefold.mapping import Set
 
+    from .bearing_rigidity import Rigidity
     from .drawing import Drawing
+    from .leg_classes import LegClass
 
 __all__ = ["named_sets", "render"]
 
@@ -53,6 +62,7 @@ def render(
     labels: bool | None = None,
     theme: str = "auto",
     width: int = 800,
+    rigidity: bool | Rigidity = False,
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -60,15 +70,17 @@ def render(
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
+    found = rigidity_of(drawing.plane, rigidity)
+    classes = () if found is None else leg_classes(found)
     page = _Page(drawing, width, title)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets)),
+        _defs(theme, len(sets), legs=found is not None),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
-        *_edges(page),
+        *(_edges(page) if found is None else _classed_edges(page, found, classes)),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
         *_vertices(page),
@@ -76,7 +88,7 @@ def render(
     ]
     if shown:
         body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
-    legend, height = _legend(page, sets)
+    legend, height = _legend(page, sets, classes, found)
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -160,7 +172,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int) -> str:
+def _defs(theme: str, used: int, *, legs: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -168,7 +180,7 @@ def _defs(theme: str, used: int) -> str:
         for k in range(used)
         if _HATCH[k] is not None
     )
-    return f"<style>{style_sheet(theme, used)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+    return f"<style>{style_sheet(theme, used, legs=legs)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
 
 
 def _heading(title: str | None) -> list[str]:
@@ -220,6 +232,39 @@ def _edges(page: _Page) -> list[str]:
     return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
 
 
+def _classed_edges(page: _Page, found: Rigidity, classes: tuple[LegClass, ...]) -> list[str]:
+    """Return the edges, a group for each class; beyond `TIPS_UP_TO` one path for each."""
+    plane = page.drawing.plane
+    parts = []
+    for kind in classes:
+        shape = f'class="{kind.name}" fill="none" {_leg_look(kind.name, page.stroke)}'
+        lines = [page.path(page.drawing.path(e)) for e in kind.edges]
+        whole = "".join(lines)
+        if kind.name == "contradicted":
+            wide = _leg_width(kind.name, page.stroke) + 2.0
+            parts.append(f'<path class="halo" fill="none" stroke-width="{wide:.2f}" stroke-linejoin="round" d="{whole}"/>')
+        if plane.n_edges > TIPS_UP_TO:
+            parts.append(f'<path {shape} d="{whole}"/>')
+            continue
+        tips = (
+            f'<path d="{d}"><title>{_escaped(f"{plane.edge_names[e]}: {leg_tip(found, kind, e)}")}</title></path>'
+            for e, d in zip(kind.edges, lines, strict=True)
+        )
+        parts.append(f"<g {shape}>{''.join(tips)}</g>")
+    return parts
+
+
+def _leg_width(name: str, stroke: float) -> float:
+    return stroke if name == "evened" else max(4.0, 3 * stroke) if name == "contradicted" else max(1.4, 1.5 * stroke)
+
+
+def _leg_look(name: str, stroke: float) -> str:
+    if name != "evened":
+        return f'stroke-width="{_leg_width(name, stroke):.2f}" stroke-linecap="round" stroke-linejoin="round"'
+    dash = f"{max(2.5, 3.5 * stroke):.1f} {max(1.5, 2 * stroke):.1f}"
+    return f'stroke-width="{_leg_width(name, stroke):.2f}" stroke-dasharray="{dash}" stroke-linejoin="round"'
+
+
 def _vertices(page: _Page) -> list[str]:
     plane = page.drawing.plane
     at = page.place(page.drawing.points).tolist()
@@ -264,24 +309,46 @@ def _names(page: _Page, marked: set[int]) -> list[str]:
     return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
 
 
-def _legend(page: _Page, sets: list[tuple[str, Set]]) -> tuple[list[str], float]:
+def _legend(
+    page: _Page, sets: list[tuple[str, Set]], classes: tuple[LegClass, ...], found: Rigidity | None
+) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
-    for k, (name, s) in enumerate(sets):
-        text = f"{name}: {_kind(s)}"
+    entries: list[tuple[Callable[[float, float], str], str]] = [
+        (partial(_swatch, k, s), f"{name}: {_kind(s)}") for k, (name, s) in enumerate(sets)
+    ]
+    entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in classes]
+    for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
             x, y = _PAD, y + 24
-        parts.append(_swatch(k, s, x, y))
+        parts.append(swatch(x, y))
         parts.append(f'<text class="ink" x="{x + 30:.1f}" y="{y + 4.5:.1f}" font-size="13">{_escaped(text)}</text>')
         x += wide
-    if sets:
+    if entries:
         y += 26
     caption = [_counts(page.drawing), f"{page.drawing.layout} layout", *page.drawing.notes]
+    if found is not None:
+        caption.append(_said_of(found, page.drawing.layout))
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
     return parts, y + 6
+
+
+def _said_of(found: Rigidity, layout: str) -> str:
+    """Return what the caption says of fixed shapes: how they are in this picture, and what is open."""
+    if layout not in ("compass", "given") and found.counts["parts"]:
+        return "what the headings fix is coloured, but this layout does not keep it; the compass layout does"
+    n = found.freedom
+    if not n:
+        return "no proportion is open"
+    return f"{counted(n, 'proportion')} {'is' if n == 1 else 'are'} open, chosen by the drawing"
+
+
+def _leg_swatch(name: str, x: float, y: float) -> str:
+    way = f"M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"
+    return f'<path class="{name}" fill="none" {_leg_look(name, 1.6)} d="{way}"/>'
 
 
 def _swatch(k: int, s: Set, x: float, y: float) -> str:
