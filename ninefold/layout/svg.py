@@ -6,7 +6,7 @@ points as dots. Names appear on small maps only; edges and vertices carry tool t
 triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
 
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
-the rest contradicts broad and on top.
+the rest contradicts broad and on top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
 """
 
 from __future__ import annotations
@@ -73,6 +73,8 @@ def render(
     found = rigidity_of(drawing.plane, rigidity)
     classes = () if found is None else leg_classes(found)
     page = _Page(drawing, width, title)
+    if found is not None:
+        page.band = 4.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
         _defs(theme, len(sets), legs=found is not None),
@@ -80,9 +82,10 @@ def render(
         *_heading(title),
         *_ground(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
-        *(_edges(page) if found is None else _classed_edges(page, found, classes)),
+        *(_edges(page) if found is None else []),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
+        *([] if found is None else _classed_edges(page, found, classes)),
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
     ]
@@ -147,6 +150,7 @@ class _Page:
         self._low, self._origin = low, np.array([(width - used[0]) / 2, self.bottom - _PAD - max(0.0, (24 - used[1]) / 2)])
         n = max(drawing.plane.n_vertices, 1)
         self.stroke = float(np.clip(14 / n**0.4, 0.35, 1.8))
+        self.band = 0.0
         self.dot = float(np.clip(20 / n**0.45, 0.6, 4.5))
 
     def place(self, xy: NDArray[Any]) -> NDArray[np.float64]:
@@ -206,14 +210,14 @@ def _region(page: _Page, k: int, x: Region) -> list[str]:
 
 
 def _outline(page: _Page, k: int, x: Region) -> list[str]:
-    broad = float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
+    broad = page.band or float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
     shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"'
     return [f'<path class="s{k}" {shape} d="{page.rings(x)}"/>']
 
 
 def _line(page: _Page, k: int, x: Line) -> list[str]:
     d = "".join(page.path(page.drawing.path(e)) for e in x.edges)
-    broad = max(4.2, 2.4 * page.stroke)
+    broad = max(4.2, 2.4 * page.stroke, page.band + 2.0 if page.band else 0.0)
     shape = f'fill="none" stroke-linecap="round" stroke-linejoin="round" d="{d}"'
     return [
         f'<path class="halo" stroke-width="{broad + 2.4:.2f}" {shape}/>',

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ninefold._wording import counted
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput, NotPlane
 from ninefold.immutable import Immutable, freeze
 
@@ -57,6 +57,9 @@ class PlaneMap(Immutable):
     heading, turn
         (2E,) float64 yaw in radians on leaving along the dart, and (E,) float64 net rotation in radians along dart 2e,
         both counter-clockwise and NaN on tethers; or None, None.
+    metres
+        (E,) float64 length that a walk measured along each edge, NaN on tethers and where nothing was measured; None if no
+        edge has one. No answer depends on it.
     vertex_names, edge_names
         Unique labels; edge names cover the E edges, tethers included (which nobody asks for).
 
@@ -78,6 +81,7 @@ class PlaneMap(Immutable):
     tether: NDArray[np.bool_]
     heading: NDArray[np.float64] | None
     turn: NDArray[np.float64] | None
+    metres: NDArray[np.float64] | None
     vertex_names: Names
     edge_names: Names
     _derived: checks.Derived = field(repr=False)
@@ -95,6 +99,7 @@ class PlaneMap(Immutable):
         tether: ArrayLike | None = None,
         heading: ArrayLike | None = None,
         turn: ArrayLike | None = None,
+        metres: ArrayLike | None = None,
         vertex_names: Iterable[str | int] | None = None,
         edge_names: Iterable[str | int] | None = None,
     ) -> PlaneMap:
@@ -113,6 +118,8 @@ class PlaneMap(Immutable):
             (E,) bool; the tethers must join the components of the rest like a tree.
         heading, turn
             (2E,) yaw on leaving and (E,) net rotation, radians counter-clockwise. Both or neither.
+        metres
+            (E,) measured lengths, positive, NaN where unknown; what is given on tethers is left out.
 
         Raises
         ------
@@ -155,7 +162,8 @@ class PlaneMap(Immutable):
             )
         angles = _angles(heading, turn, virtual)
         outer = None if outer is None else _whole("outer", outer)
-        return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
+        lengths = _lengths(metres, virtual, e_names)
+        return cls._checked(tails, after, outer, virtual, angles, v_names, e_names, metres=lengths)
 
     @classmethod
     def _checked(
@@ -168,6 +176,8 @@ class PlaneMap(Immutable):
         vertex_names: Names,
         edge_names: Names,
         derived: checks.Derived | None = None,
+        *,
+        metres: NDArray[np.float64] | None = None,
     ) -> PlaneMap:
         """Check rotation, connection, Euler and turning numbers of arrays this map may keep; the last step of all makers."""
         if derived is None:
@@ -184,9 +194,9 @@ class PlaneMap(Immutable):
             components = checks.components_without_tethers(tail, next_ccw, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
-        freeze(tail, next_ccw, tether, heading, turn)
+        freeze(tail, next_ccw, tether, heading, turn, metres)
         freeze(derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
-        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, vertex_names, edge_names, derived)
+        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, metres, vertex_names, edge_names, derived)
 
     @classmethod
     def from_rotation(
@@ -262,7 +272,7 @@ class PlaneMap(Immutable):
         Returns
         -------
         PlaneMap
-            With headings and turns. Coordinates are not kept.
+            With headings and turns. Coordinates are not kept, nor lengths, which a walk measures if any.
 
         Raises
         ------
@@ -477,6 +487,7 @@ class PlaneMap(Immutable):
             tether=self.tether,
             heading=self.heading,
             turn=self.turn,
+            metres=self.metres,
             vertex_names=self.vertex_names,
             edge_names=self.edge_names,
         )
@@ -485,6 +496,7 @@ class PlaneMap(Immutable):
             and np.array_equal(again.next_face, self.next_face)
             and np.array_equal(again.rank, self.rank)
             and again.n_faces == self.n_faces
+            and _same(again.metres, self.metres)
             and self.n_vertices - self.tether.size + self.n_faces == 2
         )
         if not same:
@@ -502,6 +514,7 @@ class PlaneMap(Immutable):
             and np.array_equal(self.tether, other.tether)
             and _same(self.heading, other.heading)
             and _same(self.turn, other.turn)
+            and _same(self.metres, other.metres)
             and self.vertex_names == other.vertex_names
             and self.edge_names == other.edge_names
         )
@@ -589,6 +602,23 @@ def _angles(
         raise BadInput(f"heading and turn must be finite radians, at most {LARGEST_ANGLE:.0f} either way")
     head -= TAU * np.round(head / TAU)
     return head, turns
+
+
+def _lengths(metres: ArrayLike | None, tether: NDArray[np.bool_], edge_names: Names) -> NDArray[np.float64] | None:
+    """Return lengths as a map keeps them: None if no edge has one."""
+    if metres is None:
+        return None
+    lengths = _array("metres", metres, np.float64)
+    if lengths.shape != (tether.size,):
+        raise BadInput(f"metres has shape {lengths.shape}, not ({tether.size},)")
+    lengths[tether] = np.nan
+    wrong = np.flatnonzero((lengths <= 0) | np.isinf(lengths))
+    if wrong.size:
+        e = int(wrong[0])
+        raise BadInput(
+            f"metres of edge {quoted(edge_names[e])} is {lengths[e]:g}; a length is positive and finite, NaN where unknown"
+        )
+    return None if np.isnan(lengths).all() else lengths
 
 
 def _outer(
