@@ -120,7 +120,7 @@ class Rigidity(Immutable):
         """One line for each leg that the rest contradicts, the worst first."""
         return tuple(
             f"leg {quoted(name)} misses what the other headings say by {self._degrees(name):.0f} degrees: "
-            "it is curved, its heading is wrong, or two places were taken for one"
+            "it is curved, its heading or one beside it is wrong, or two places were taken for one"
             for name in self.contradicted
         )
 

@@ -74,7 +74,7 @@ def render(
     classes = () if found is None else leg_classes(found)
     page = _Page(drawing, width, title)
     if found is not None:
-        page.band = 4.5 + _leg_width("fixed0", page.stroke)
+        page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
         _defs(theme, len(sets), legs=found is not None),
@@ -150,7 +150,7 @@ class _Page:
         self._low, self._origin = low, np.array([(width - used[0]) / 2, self.bottom - _PAD - max(0.0, (24 - used[1]) / 2)])
         n = max(drawing.plane.n_vertices, 1)
         self.stroke = float(np.clip(14 / n**0.4, 0.35, 1.8))
-        self.band = 0.0
+        self.band = 0.0  # width of lines and outlines that lie below coloured edges; 0 where they lie on top
         self.dot = float(np.clip(20 / n**0.45, 0.6, 4.5))
 
     def place(self, xy: NDArray[Any]) -> NDArray[np.float64]:
@@ -211,18 +211,22 @@ def _region(page: _Page, k: int, x: Region) -> list[str]:
 
 def _outline(page: _Page, k: int, x: Region) -> list[str]:
     broad = page.band or float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
-    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"'
+    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"{_faded(page)}'
     return [f'<path class="s{k}" {shape} d="{page.rings(x)}"/>']
 
 
 def _line(page: _Page, k: int, x: Line) -> list[str]:
     d = "".join(page.path(page.drawing.path(e)) for e in x.edges)
-    broad = max(4.2, 2.4 * page.stroke, page.band + 2.0 if page.band else 0.0)
+    broad = max(4.2, 2.4 * page.stroke, 1.4 * page.band)
     shape = f'fill="none" stroke-linecap="round" stroke-linejoin="round" d="{d}"'
     return [
         f'<path class="halo" stroke-width="{broad + 2.4:.2f}" {shape}/>',
-        f'<path class="s{k}" stroke-width="{broad:.2f}" {shape}/>',
+        f'<path class="s{k}" stroke-width="{broad:.2f}"{_faded(page)} {shape}/>',
     ]
+
+
+def _faded(page: _Page) -> str:
+    return ' stroke-opacity="0.45"' if page.band else ""
 
 
 def _edges(page: _Page) -> list[str]:
