@@ -310,6 +310,16 @@ def test_an_atlas_without_metres_stays_readable_for_older_programs(tmp_path):
     assert "metres" not in columns_of_edges(path)
 
 
+def test_metres_of_a_leg_without_end_are_kept_too(tmp_path):
+    walk, path = Walk(WalkHeader(), (*triangle(None)[:5], Samples.of(SOUTHWEST, metres=3.0))), tmp_path / "town.atlas"
+    with Atlas.from_walk(walk, path) as atlas:
+        assert (atlas.walk, atlas.plane.metres) == (walk, None)
+    assert version_of(path) == 2
+    with Atlas.open(path) as atlas:
+        atlas.append(Visit("a"))
+        assert metres_of(atlas.plane) == [None, None, 3.0]
+
+
 @pytest.mark.parametrize("closed", [True, False])
 def test_metres_appended_to_an_older_atlas_make_it_a_newer_one(tmp_path, closed):
     path = tmp_path / "town.atlas"
