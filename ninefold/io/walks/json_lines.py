@@ -9,9 +9,9 @@
     {"place": "yard", "edge": "back door", "t": 12.5}
 
 ``exits``, ``edge`` (the name of the edge walked to get to the place), ``tolerance`` (radians, whatever the unit of the
-headings), ``t`` (seconds, never decreasing) and ``metres`` (of the way to a line of headings from the one before, or from the
-place left; finite, not negative) are optional; ``"place": null`` is a place not recognised; integers are accepted as names;
-keys not listed here are let pass, and those of the header are kept. Text is UTF-8.
+headings), ``t`` (seconds, never decreasing) and ``metres`` (of the way to a line of headings from the one before, or from
+the place left; finite, not negative) are optional; ``"place": null`` is a place not recognised; integers are accepted as
+names; keys not listed here are let pass, and those of the header are kept. Text is UTF-8.
 """
 
 from __future__ import annotations
@@ -287,7 +287,9 @@ class WalkReader:
         if "heading" in found or "headings" in found:
             self._fail("a place and a heading on one line; give each its own")
         if found.get("metres") is not None:
-            self._fail('"metres" on the line of a place; give them with the headings of the leg that was walked to get there')
+            self._fail(
+                '"metres" on the line of a place; give them with the headings of the leg that was walked to get there'
+            )
         if place is not None:
             place = self._name("vertex", "place", place)
         edge = found.get("edge")
