@@ -115,7 +115,7 @@ def info(
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
         plane.validate()
-        measured = _measured(plane, asked=rigidity)
+        measured = _fixed_by_headings(plane, asked=rigidity)
         facts: dict[str, Any] = {
             "file": str(atlas),
             **_counts(plane),
@@ -210,7 +210,7 @@ def _checks(plane: "PlaneMap") -> dict[str, Any]:
     return checks
 
 
-def _measured(plane: "PlaneMap", *, asked: bool) -> "Rigidity | None":
+def _fixed_by_headings(plane: "PlaneMap", *, asked: bool) -> "Rigidity | None":
     """Return what the headings fix; None for a map without headings, or one that is large if nobody asked."""
     if plane.heading is None:
         if asked:
@@ -227,7 +227,7 @@ def _measured(plane: "PlaneMap", *, asked: bool) -> "Rigidity | None":
     return rigidity(plane, tested=tested)
 
 
-def _fixed(counts: dict[str, int]) -> str:
+def _fixed_in_words(counts: dict[str, int]) -> str:
     """Return the line on what the headings fix."""
     text = f"{counts['legs']:,} of {counted(counts['all'], 'leg')}"
     if counts["parts"]:
@@ -260,7 +260,7 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     )
     print(f"checks       V - E + F is right; {turning}")
     if facts["fixed"] is not None:
-        print(f"headings fix {_fixed({**facts['fixed'], 'all': facts['edges']})}")
+        print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
     events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
     print(f"made from    a {facts['origin']}{events}")
     for record in facts["provenance"]:
