@@ -199,8 +199,8 @@ def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     d = before[q ^ 1]
     while d != p:
         w = tail[d]
-        corner = w == a or w == b or w == c  # noqa: SIM109 - compiled, a tuple of integers of two widths holds nothing
-        near = not corner and west <= points[w, 0] <= east and south <= points[w, 1] <= north
+        other = w != a and w != b and w != c
+        near = other and west <= points[w, 0] <= east and south <= points[w, 1] <= north
         if near and quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
             return True
         d = before[d ^ 1]
