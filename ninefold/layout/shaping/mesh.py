@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from .pieces import Pieces
 
-__all__ = ["Mesh", "doubled_areas", "squared_sides"]
+__all__ = ["Mesh", "doubled_areas", "squared_sides", "too_flat"]
 
 FRAME = 16
 """Corners of the frame."""
@@ -120,7 +120,7 @@ class Mesh:
 
     def bad(self) -> NDArray[np.bool_]:
         """Mark the triangles, (T,), that are the wrong way round, or so flat that rounding could turn them."""
-        return self.areas() <= _FLAT * squared_sides(self.points, self.triangles)
+        return too_flat(self.points, self.triangles)
 
     def near(self, seeds: NDArray[np.int64], rings: int) -> NDArray[np.bool_]:
         """Mark the vertices within some rings of triangles of the seeds; the frame is never among them."""
@@ -148,6 +148,11 @@ def squared_sides(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> 
     """Return the sum of the squared sides of triangles, (T,)."""
     corner = points[triangles]
     return np.asarray(((corner - np.roll(corner, 1, 1)) ** 2).sum(axis=(1, 2)))
+
+
+def too_flat(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Mark the triangles, (T,), that are the wrong way round, or so flat that rounding could turn them."""
+    return np.asarray(doubled_areas(points, triangles) <= _FLAT * squared_sides(points, triangles))
 
 
 @kernel(forceinline=True)
@@ -199,7 +204,8 @@ def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     d = before[q ^ 1]
     while d != p:
         w = tail[d]
-        near = w not in (a, b, c) and west <= points[w, 0] <= east and south <= points[w, 1] <= north
+        other = w != a and w != b and w != c
+        near = other and west <= points[w, 0] <= east and south <= points[w, 1] <= north
         if near and quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
             return True
         d = before[d ^ 1]
