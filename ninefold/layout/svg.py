@@ -50,6 +50,7 @@ _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-s
 _UNFIT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _PARSE = "plane.parse makes a set of text"
 _PAD = 28.0
+_TRUE_TO_HEADINGS = ("compass", "given", "ground")
 _HATCH = (None, 45, -45, 0, 90, 22, -22)
 _DASH = ("none", "10 8", "3 6", "14 6", "6 6", "2 4", "12 4 3 4")
 
@@ -346,7 +347,7 @@ def _legend(
 
 def _said_of(found: Rigidity, layout: str) -> str:
     """Return what the caption says of fixed shapes: how they are in this picture, and what is open."""
-    if layout not in ("compass", "given") and found.counts["parts"]:
+    if layout not in _TRUE_TO_HEADINGS and found.counts["parts"]:
         return "what the headings fix is coloured, but this layout does not keep it; the compass layout does"
     n = found.freedom
     if not n:
