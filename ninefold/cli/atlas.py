@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["info", "map_source", "name"]
 
-FIXED_UP_TO = 20_000
+FIXED_UP_TO = 50_000
 """Edges up to which `info` says what the headings fix without being asked: a moment's work."""
 
 TESTED_UP_TO = 5_000
