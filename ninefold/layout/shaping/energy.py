@@ -165,12 +165,17 @@ def damped(mesh: Mesh, step: NDArray[np.float64], *, keep: float, rounds: int = 
     good = ~mesh.bad()
     triangles, floor = mesh.triangles[good], keep * mesh.areas()[good]
     scale = np.ones(len(step))
+    asked, least = triangles, floor  # those with a corner whose step was shortened since they were looked at
     for _ in range(rounds):
         moved = mesh.points + scale[:, None] * step
-        lost = (doubled_areas(moved, triangles) < floor) | too_flat(moved, triangles)
+        lost = (doubled_areas(moved, asked) < least) | too_flat(moved, asked)
         if not lost.any():
             return moved
-        scale[np.unique(triangles[lost])] *= 0.5
+        shortened = np.zeros(len(step), np.bool_)
+        shortened[asked[lost]] = True
+        scale[shortened] *= 0.5
+        again = shortened[triangles].any(axis=1)
+        asked, least = triangles[again], floor[again]
     while True:
         moved = mesh.points + scale[:, None] * step
         corners = np.unique(triangles[too_flat(moved, triangles)])
