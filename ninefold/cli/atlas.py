@@ -22,7 +22,7 @@ FIXED_UP_TO = 50_000
 """Edges up to which `info` says what the headings fix without being asked: a moment's work."""
 
 TESTED_UP_TO = 5_000
-"""Edges up to which it holds the headings against each other without being asked: about a second."""
+"""Edges up to which it holds the headings against each other without being asked: a second, and half for each it names."""
 
 
 def map_source(
@@ -115,7 +115,6 @@ def info(
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
         plane.validate()
-        measured = _fixed_by_headings(plane, asked=rigidity)
         facts: dict[str, Any] = {
             "file": str(atlas),
             **_counts(plane),
@@ -126,15 +125,20 @@ def info(
             "origin": found.origin,
             "events": found.n_events,
             "checks": _checks(plane),
-            "fixed": None if measured is None else measured.counts,
+            "fixed": None,
             "names": found.kinds,
             "statements": len(found.statements),
             "provenance": [
                 {"source": p.source, "kind": p.kind, "sha256": p.sha256, "tool": p.tool, "made": p.made}
                 for p in found.provenance
             ],
-            "warnings": [*found.warnings, *(() if measured is None else measured.warnings)],
+            "warnings": list(found.warnings),
         }
+    with progress("holding the headings against each other"):
+        measured = _fixed_by_headings(plane, asked=rigidity)
+    if measured is not None:
+        facts["fixed"] = measured.counts
+        facts["warnings"] += measured.warnings
     if as_json:
         print_json(facts)
     else:
