@@ -21,10 +21,12 @@ from .theme import FIXED
 if TYPE_CHECKING:
     from ninefold.mapping import PlaneMap
 
-__all__ = ["LegClass", "leg_classes", "leg_tip", "rigidity_of"]
+__all__ = ["LegClass", "caption_of", "leg_classes", "leg_tip", "rigidity_of"]
 
 _OWN_COLOUR = len(FIXED["light"]) - 1
 """Parts with a colour of their own; the last colour is for all others."""
+
+_TRUE_TO_HEADINGS = ("compass", "given", "ground")
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,3 +123,13 @@ def leg_tip(found: Rigidity, kind: LegClass, edge: int) -> str:
     part = int(found.part[edge])
     text = f"in part {part + 1}, whose shape the headings fix ({counted(int(found.sizes[part]), 'leg')})"
     return f"{text}; its heading misses the others by {missed}" if found.miss[edge] else text
+
+
+def caption_of(found: Rigidity, layout: str) -> str:
+    """Return what the caption says of fixed shapes: how they are in this picture, and what is open."""
+    if layout not in _TRUE_TO_HEADINGS and found.counts["parts"]:
+        return "what the headings fix is coloured, but this layout does not keep it; the compass layout does"
+    n = found.freedom
+    if not n:
+        return "no proportion is open"
+    return f"{counted(n, 'proportion')} {'is' if n == 1 else 'are'} open, chosen by the drawing"

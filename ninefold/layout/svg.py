@@ -23,7 +23,7 @@ from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
 from .labels import place_labels, text_width
-from .leg_classes import leg_classes, leg_tip, rigidity_of
+from .leg_classes import caption_of, leg_classes, leg_tip, rigidity_of
 from .shapes import region_rings
 from .theme import ROLES, THEMES, style_sheet
 
@@ -50,7 +50,6 @@ _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-s
 _UNFIT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _PARSE = "plane.parse makes a set of text"
 _PAD = 28.0
-_TRUE_TO_HEADINGS = ("compass", "given", "ground")
 _HATCH = (None, 45, -45, 0, 90, 22, -22)
 _DASH = ("none", "10 8", "3 6", "14 6", "6 6", "2 4", "12 4 3 4")
 
@@ -338,21 +337,11 @@ def _legend(
         y += 26
     caption = [_counts(page.drawing), f"{page.drawing.layout} layout", *page.drawing.notes]
     if found is not None:
-        caption.append(_said_of(found, page.drawing.layout))
+        caption.append(caption_of(found, page.drawing.layout))
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
     return parts, y + 6
-
-
-def _said_of(found: Rigidity, layout: str) -> str:
-    """Return what the caption says of fixed shapes: how they are in this picture, and what is open."""
-    if layout not in _TRUE_TO_HEADINGS and found.counts["parts"]:
-        return "what the headings fix is coloured, but this layout does not keep it; the compass layout does"
-    n = found.freedom
-    if not n:
-        return "no proportion is open"
-    return f"{counted(n, 'proportion')} {'is' if n == 1 else 'are'} open, chosen by the drawing"
 
 
 def _leg_swatch(name: str, x: float, y: float) -> str:

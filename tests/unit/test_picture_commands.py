@@ -174,6 +174,14 @@ def test_every_layout_can_be_drawn_and_verified(run, run_json, house, tmp_path, 
     assert (code, found["agree"], found["layout"], found["notes"]) == (0, True, name, [])
 
 
+@pytest.mark.parametrize("layout", ["compass", "relaxed"])
+def test_the_district_agrees_with_shapely_on_drawings_for_people(run_json, tmp_path, layout):
+    atlas = tmp_path / "district.atlas"
+    Atlas.from_map(samples.load("helsinki_district").to_map(), atlas).close()
+    code, found = run_json("verify", atlas, "--layout", layout, "--pairs", 20_000)
+    assert (code, found["pairs"], found["wrong"], found["layout"]) == (0, 20_000, 0, layout)
+
+
 def test_help_lists_every_layout(run):
     for command in ("draw", "verify"):
         out = run(command, "--help")[1]
