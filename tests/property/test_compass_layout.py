@@ -1,4 +1,4 @@
-"""Drawings from headings, and relaxed ones, on every kind of map: plane with the map's rotation, or another layout that says so."""
+"""Drawings from headings, and relaxed ones, on every kind of map: plane and true to it, or another layout that says so."""
 
 from pathlib import Path
 
@@ -206,7 +206,7 @@ def test_chords_and_headings_are_asked_for():
     ):
         with pytest.raises(BadInput, match=f"one finite angle in radians for each of {plane.tether.size} edges"):
             compass(plane, chords=wrong)
-    with pytest.raises(BadInput, match="no headings.*relaxed"):
+    with pytest.raises(BadInput, match=r"no headings.*relaxed"):
         compass(random_map(1, "tree", 5))
     given = np.zeros(plane.tether.size)
     before = given.copy()

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold._kernels import kernel
+from ninefold.mapping.checks import face_labels, face_permutation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,7 +83,8 @@ class Mesh:
         self._fixed[: m // 2] = pieces.real
         self._fixed[m // 2 : m // 2 + FRAME] = True
         self._work = _STEPS * room
-        cut = cut_faces.for_work(self._work)
+        sizes = np.bincount(face_labels(face_permutation(simple.next_ccw))[0]) + FRAME
+        cut = cut_faces.for_work(self._work + int((sizes**2).sum()) // 2)
         self._used, self.forced = cut(self._tail, self._after, self._before, self.points, used + 2, self._outside)
         self.triangles = np.zeros((0, 3), np.int64)
         self.flip()
