@@ -199,7 +199,7 @@ def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     d = before[q ^ 1]
     while d != p:
         w = tail[d]
-        near = w not in (a, b, c) and west <= points[w, 0] <= east and south <= points[w, 1] <= north
+        near = w != a and w != b and w != c and west <= points[w, 0] <= east and south <= points[w, 1] <= north
         if near and quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
             return True
         d = before[d ^ 1]
