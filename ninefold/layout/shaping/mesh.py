@@ -33,8 +33,8 @@ _FLAT = 1e-9
 """Twice the area over the squared sides, up to which a triangle counts as flat."""
 
 _SWEEPS = 30
-_STEPS = 40
-"""Elementary steps that cutting takes a dart, of the kind `Kernel.for_work` counts."""
+_STEPS, _FLIP_STEPS = 10, 5
+"""Elementary steps that cutting and flipping take a dart, of the kind `Kernel.for_work` counts; measured on streets."""
 
 
 class Mesh:
@@ -81,8 +81,7 @@ class Mesh:
         self._fixed = np.zeros(room // 2, np.bool_)
         self._fixed[: m // 2] = pieces.real
         self._fixed[m // 2 : m // 2 + FRAME] = True
-        self._work = _STEPS * room
-        cut = cut_faces.for_work(self._work)
+        cut = cut_faces.for_work(_STEPS * room)
         self._used, self.forced = cut(self._tail, self._after, self._before, self.points, used + 2, self._outside)
         self.triangles = np.zeros((0, 3), np.int64)
         self.flip()
@@ -102,7 +101,7 @@ class Mesh:
 
     def flip(self) -> None:
         """Flip diagonals until no flip makes the worse of two triangles better."""
-        run = flip_diagonals.for_work(self._work)
+        run = flip_diagonals.for_work(_FLIP_STEPS * self._tail.size)
         run(self._tail, self._after, self._before, self.points, self._used, self._fixed, _SWEEPS)
         dart = np.arange(self._used)
         second = self._before[dart ^ 1]
@@ -199,7 +198,8 @@ def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     d = before[q ^ 1]
     while d != p:
         w = tail[d]
-        near = w != a and w != b and w != c and west <= points[w, 0] <= east and south <= points[w, 1] <= north
+        other = w != a and w != b and w != c
+        near = other and west <= points[w, 0] <= east and south <= points[w, 1] <= north
         if near and quality(points, a, b, w) >= 0 and quality(points, b, c, w) >= 0 and quality(points, c, a, w) >= 0:
             return True
         d = before[d ^ 1]
