@@ -20,7 +20,7 @@ from ninefold.mapping import PlaneMap, Set, build
 from ninefold.mapping.robot.simulated import explore
 
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
-CREDIT = "streets \N{COPYRIGHT SIGN} OpenStreetMap contributors, ODbL"
+CREDIT = "\N{COPYRIGHT SIGN} OpenStreetMap contributors, ODbL"
 AVENUES = ("Mannerheimintie", "Unioninkatu")
 
 
@@ -52,7 +52,7 @@ def district() -> str:
     """The streets that the robot never saw, beside what it drew."""
     source = samples.load("helsinki_district")
     plane = walked(source)
-    ground: Drawing = replace(TrueShapes(source).drawing(plane), layout="true", notes=(CREDIT,))
+    ground: Drawing = replace(TrueShapes(source).drawing(plane), notes=(CREDIT,))
     drawing = compass(plane)
     sets = shown(plane)
     return side_by_side(

@@ -277,7 +277,8 @@ def _legend(page: _Page, sets: list[tuple[str, Set]]) -> tuple[list[str], float]
         x += wide
     if sets:
         y += 26
-    caption = [_counts(page.drawing), f"{page.drawing.layout} layout", *page.drawing.notes]
+    layout = page.drawing.layout
+    caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
