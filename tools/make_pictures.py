@@ -56,8 +56,8 @@ def district() -> str:
     drawing = compass(plane)
     sets = shown(plane)
     return side_by_side(
-        ground.to_svg(highlight=sets, title="The streets, which the robot never saw", width=620),
-        drawing.to_svg(highlight=sets, title="What it drew from its compass alone", width=620),
+        ground.to_svg(highlight=sets, title="The streets, which the robot never saw", width=670),
+        drawing.to_svg(highlight=sets, title="What it drew from its compass alone", width=670),
     )
 
 

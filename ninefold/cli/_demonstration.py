@@ -259,7 +259,7 @@ def _likeness(drawing: Drawing, ground: Drawing) -> tuple[float, float, float, f
 
 def _beside(drawings: Mapping[str, Drawing], shown: Mapping[str, Set]) -> str:
     """Return drawings next to each other, by their titles, with the same sets coloured."""
-    return side_by_side(*(d.to_svg(highlight=shown, title=title, width=620) for title, d in drawings.items()))
+    return side_by_side(*(d.to_svg(highlight=shown, title=title, width=670) for title, d in drawings.items()))
 
 
 def _figure_eight() -> str:
