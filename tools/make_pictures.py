@@ -53,11 +53,11 @@ def district() -> str:
     source = samples.load("helsinki_district")
     plane = walked(source)
     ground: Drawing = replace(TrueShapes(source).drawing(plane), notes=(CREDIT,))
-    drawing = compass(plane)
+    drawing = replace(compass(plane), notes=("from the headings of a walk alone",))
     sets = shown(plane)
     return side_by_side(
-        ground.to_svg(highlight=sets, title="The streets, which the robot never saw", width=670),
-        drawing.to_svg(highlight=sets, title="What it drew from its compass alone", width=670),
+        ground.to_svg(highlight=sets, title="The streets, which the robot never saw", width=580),
+        drawing.to_svg(highlight=sets, title="What it drew from its compass alone", width=580),
     )
 
 
