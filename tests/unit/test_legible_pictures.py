@@ -1,10 +1,10 @@
-"""Legs that turn back are drawn as curves: straight they would leave needles beside what they go around."""
+"""Compass drawings are legible: legs that turn back are curves, and parts in the way stay large enough to see."""
 
 import numpy as np
 import shapely
 
 from ninefold.io import samples
-from ninefold.layout import compass, drawing_problems
+from ninefold.layout import TrueShapes, compass, drawing_problems, misplacement, tutte
 
 
 def roundness(drawing, face):
@@ -36,3 +36,17 @@ def test_in_the_district_legs_that_turn_back_are_curves_and_others_are_not():
     assert all(abs(plane.turn[e]) > np.radians(100) for e in bent)
     lines = shapely.MultiLineString([drawing.path(e) for e in range(plane.n_edges)])
     assert len(shapely.get_parts(shapely.node(lines))) == plane.n_edges
+
+
+def test_a_room_in_the_way_has_its_corridor_shortened_too():
+    source = samples.load("house")
+    plane = source.to_map()
+    drawing = compass(plane)
+
+    def length(a, b):
+        return np.hypot(*np.subtract(*drawing.points[[plane.vertex_names.row(a), plane.vertex_names.row(b)]]))
+
+    assert length("stair", "bath") > length("nw", "ne") / 8
+    assert length("nw", "stair") < length("nw", "ne")
+    ground = TrueShapes(source).drawing(plane)
+    assert misplacement(drawing, ground) < misplacement(tutte(plane), ground, turned=True)
