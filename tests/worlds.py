@@ -205,3 +205,29 @@ def _blob(rng: np.random.Generator, plane: PlaneMap, bounded: list[int]) -> Regi
             break
         blob.add(int(rng.choice(sorted(edge))))
     return Region.from_faces(plane, blob)
+
+
+def braced(n: int, share: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random points, and a spanning tree of their triangulation with a share of the edges that are left."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import minimum_spanning_tree
+
+    rng = np.random.default_rng(seed)
+    points = rng.random((n, 2))
+    t = Delaunay(points).simplices
+    edges = np.unique(np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1), axis=0)
+    tree = minimum_spanning_tree(coo_array((rng.random(len(edges)) + 1, edges.T), shape=(n, n)).tocsr()).tocoo()
+    keep = np.isin(edges @ [n, 1], np.minimum(tree.row, tree.col) * n + np.maximum(tree.row, tree.col))
+    spare = rng.permutation(np.flatnonzero(~keep))
+    keep[spare[: round(share * len(spare))]] = True
+    return points, edges[keep]
+
+
+def jittered(side: int, jitter: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """A grid whose points are moved a little, and the edges of its triangulation but for long ones at the rim."""
+    rng = np.random.default_rng(seed)
+    points = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2).astype(float)
+    points += rng.uniform(-jitter, jitter, points.shape)
+    t = Delaunay(points).simplices
+    edges = np.unique(np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1), axis=0)
+    return points, edges[np.hypot(*(points[edges[:, 0]] - points[edges[:, 1]]).T) < 1.6]

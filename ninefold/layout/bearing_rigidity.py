@@ -174,7 +174,7 @@ def _snoop(pieces: Pieces, tested: NDArray[np.bool_], spare: int) -> tuple[tuple
         sigma = max(np.sqrt(cost / max(left, 1)), _LEAST_SIGMA)
         rows = np.flatnonzero(pieces.measured)
         share = _redundancy(pieces, points, rows)
-        scaled = np.where(share > _LEAST_SHARE, np.abs(errors[rows]) / np.sqrt(np.maximum(share, _LEAST_SHARE)), 0.0)
+        scaled = np.abs(errors[rows]) / np.sqrt(np.maximum(share, _LEAST_SHARE))
         best = (cost, -1, pieces, points)
         for row in rows[np.argsort(-scaled, kind="stable")[:_CANDIDATES]].tolist():
             measured = pieces.measured.copy()

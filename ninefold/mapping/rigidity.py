@@ -144,7 +144,7 @@ def bring_pebble(out, start, stamp, stamps, mark, stack, came):  # type: ignore[
 def gather(out, u, v, wanted, stamp, stamps, stack, came):  # type: ignore[no-untyped-def]
     """Bring up to two pebbles to u, then to v until both hold `wanted`; return how many they hold.
 
-    After a failure ``stack`` holds the vertices that were reached from the last start.
+    Where fewer than four of four were found, ``stack`` holds the vertices that the failed search reached.
     """
     held = 0
     for k in range(2):
@@ -158,6 +158,8 @@ def gather(out, u, v, wanted, stamp, stamps, stack, came):  # type: ignore[no-un
             if not bring_pebble(out, x, stamp, stamps, stamps[0], stack, came):
                 break
         held += mine
+        if held + 2 < wanted:  # the other end cannot make up for it
+            break
     return held
 
 
@@ -181,15 +183,19 @@ def play(pairs, n):  # type: ignore[no-untyped-def]
             continue
         redundant[e] = True
         body[u] = e + 1
-        for k in range(stamps[1]):  # what was reached from v is one rigid body with u and v
+        body[v] = e + 1
+        for k in range(stamps[1]):  # what was reached is one rigid body with u and v
             body[stack[k]] = e + 1
     return out, redundant
 
 
 @kernel
-def all_paid(out, start, stamp, mark, found, stack):  # type: ignore[no-untyped-def]
-    """Return how many vertices are reached from `start` before those marked `found`, or -1 if one has a free pebble."""
-    stamp[start] = mark
+def all_paid(out, start, stamp, found, seen, mark, stack):  # type: ignore[no-untyped-def]
+    """Return how many vertices are reached from `start` before those stamped `found`, or -1 if one has a free pebble.
+
+    Which were reached is marked in `seen`.
+    """
+    seen[start] = mark
     stack[0] = start
     top = 1
     entered = 0
@@ -200,11 +206,11 @@ def all_paid(out, start, stamp, mark, found, stack):  # type: ignore[no-untyped-
         entered += 1
         for slot in range(2):
             y = out[x, slot]
-            if stamp[y] == mark or stamp[y] == found:
+            if seen[y] == mark or stamp[y] == found:
                 continue
             if out[y, 0] < 0 or out[y, 1] < 0:
                 return -1
-            stamp[y] = mark
+            seen[y] = mark
             stack[top] = y
             top += 1
     return top
@@ -214,8 +220,8 @@ def all_paid(out, start, stamp, mark, found, stack):  # type: ignore[no-untyped-
 def collect_parts(pairs, out):  # type: ignore[no-untyped-def]
     """Return the part of every edge, numbered by an edge of it.
 
-    With three pebbles on the ends of an edge, the part that the edge is in is what can be reached from the ends or
-    reaches only them, if no other vertex with a free pebble is reached; else the edge is alone.
+    With three pebbles on the ends of an edge, the part that the edge is in is what can be reached from the ends, and what
+    reaches only that: not a vertex from which another free pebble can be had.
     """
     n, n_edges = out.shape[0], pairs.shape[0]
     first = np.zeros(n + 1, np.int64)
@@ -237,6 +243,8 @@ def collect_parts(pairs, out):  # type: ignore[no-untyped-def]
     stack = np.empty(n + 1, np.int64)
     came = np.empty(n, np.int64)
     members = np.empty(n, np.int64)
+    seen = np.zeros(n, np.int64)
+    mark = 0
     for e in range(n_edges):
         if part[e] >= 0:
             continue
@@ -244,42 +252,36 @@ def collect_parts(pairs, out):  # type: ignore[no-untyped-def]
         gather(out, u, v, 3, stamp, stamps, stack, came)
         stamps[0] += 1
         found = stamps[0]
+        stamps[0] += 1
+        loose = stamps[0]
         stamp[u] = found
         stamp[v] = found
         members[0] = u
         members[1] = v
         size = 2
-        alone = False
-        seen = 0
-        while seen < size and not alone:  # what the ends reach
-            x = members[seen]
-            seen += 1
+        at_member = 0
+        while at_member < size:  # what the ends reach: no free pebble, or the ends would hold four
+            x = members[at_member]
+            at_member += 1
             for slot in range(2):
                 y = out[x, slot]
-                if y < 0 or stamp[y] == found:
-                    continue
-                if out[y, 0] < 0 or out[y, 1] < 0:
-                    alone = True
-                    break
-                stamp[y] = found
-                members[size] = y
-                size += 1
-        part[e] = e
-        if alone:
-            continue
-        seen = 0
-        while seen < size:  # neighbours that reach only these
-            x = members[seen]
-            seen += 1
+                if y >= 0 and stamp[y] != found:
+                    stamp[y] = found
+                    members[size] = y
+                    size += 1
+        at_member = 0
+        while at_member < size:  # neighbours that reach only these
+            x = members[at_member]
+            at_member += 1
             for k in range(first[x], first[x + 1]):
                 f = at[k]
                 y = pairs[f, 0] + pairs[f, 1] - x
-                if stamp[y] >= found:  # a member, or known to be loose
+                if stamp[y] == found or stamp[y] == loose:
                     continue
-                stamps[0] += 1
-                reached = all_paid(out, y, stamp, stamps[0], found, stack)
+                mark += 1
+                reached = all_paid(out, y, stamp, found, seen, mark, stack)
                 if reached < 0:
-                    stamp[y] = stamps[0]
+                    stamp[y] = loose
                     continue
                 for j in range(reached):
                     stamp[stack[j]] = found

@@ -69,10 +69,12 @@ def relax(drawing: Drawing) -> Drawing:
         return _unchanged(drawing, f"{pieces.n_vertices:,} vertices are too many to relax")
     if len(drawing.bends) != pieces.n_vertices - plane.n_vertices:
         return _unchanged(drawing, "its edges have bends of their own")
-    found = plane_picture(_opened(pieces, np.concatenate([drawing.points, drawing.bends]).astype(np.float64)))
-    if found is None:
+    given = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
+    found = plane_picture(_opened(pieces, given))
+    mesh = _as_given(pieces, given) if found is None else found[0]
+    if mesh.bad().any():
         return _unchanged(drawing, "no plane picture was found on the way")
-    points = _evened(found[0], pieces)
+    points = _evened(mesh, pieces)
     relaxed = Drawing.from_points(
         plane, points[: plane.n_vertices], points[plane.n_vertices :], pieces.simple.bend_start, layout="relaxed"
     )
@@ -82,6 +84,13 @@ def relax(drawing: Drawing) -> Drawing:
 
 def _unchanged(drawing: Drawing, why: str) -> Drawing:
     return replace(drawing, notes=(*drawing.notes, f"not relaxed: {why}"))
+
+
+def _as_given(pieces: Pieces, points: NDArray[np.float64]) -> Mesh:
+    """Return the given drawing cut into triangles, the median length 1."""
+    step = (points[pieces.head] - points[pieces.tail])[pieces.real]
+    typical = float(np.median(np.hypot(*step.T))) if len(step) else 1.0
+    return Mesh(pieces, points / (typical or 1.0))
 
 
 def _opened(pieces: Pieces, points: NDArray[np.float64]) -> Pieces:

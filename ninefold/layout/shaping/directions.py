@@ -154,6 +154,11 @@ def shape_of_directions(
         found = system.solve(right, ridge=1e-9)
         if found is None:
             return points
+        if (
+            lengths.even == 0 and not np.isfinite(pieces.metres).any()
+        ):  # nothing else holds the size, and every round of a bad fit would shrink it
+            step = (found[pieces.head] - found[pieces.tail])[pieces.measured]
+            found = found / max(float(np.hypot(*step.T).mean()) if len(step) else 1.0, 1e-9)
         moved = float(np.abs(found - points).max())
         points = found
         if k and moved < enough:

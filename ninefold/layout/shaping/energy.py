@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from .equations import System, scattered
-from .mesh import doubled_areas, squared_sides
+from .mesh import doubled_areas, squared_sides, too_flat
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,6 +34,7 @@ EQUILATERAL = 2 * np.sqrt(3.0)
 """Sum of squared sides over twice the area of an equilateral triangle."""
 
 _TINY = 1e-300
+_POINT = 1e-24
 GROW = 2.0
 
 
@@ -129,6 +130,7 @@ def _shape_terms(
     """Slope (k, 3, 2) and convex curvature (k, 6, 6) of weight x squared sides / (2 sqrt 3 x positive area)."""
     corner = points[triangles]
     sides = squared_sides(points, triangles)
+    sides = np.maximum(sides, _POINT * sides.max(initial=0.0))  # three points on one spot have no shape
     area = doubled_areas(points, triangles)
     opposite = np.roll(corner, -2, 1) - np.roll(corner, -1, 1)
     area_slope = np.stack([-opposite[:, :, 1], opposite[:, :, 0]], axis=2)
@@ -163,15 +165,20 @@ def damped(mesh: Mesh, step: NDArray[np.float64], *, keep: float, rounds: int = 
     good = ~mesh.bad()
     triangles, floor = mesh.triangles[good], keep * mesh.areas()[good]
     scale = np.ones(len(step))
+    asked, least = triangles, floor  # those with a corner whose step was shortened since they were looked at
     for _ in range(rounds):
         moved = mesh.points + scale[:, None] * step
-        bad = doubled_areas(moved, triangles) < floor
-        if not bad.any():
+        lost = (doubled_areas(moved, asked) < least) | too_flat(moved, asked)
+        if not lost.any():
             return moved
-        scale[np.unique(triangles[bad])] *= 0.5
+        shortened = np.zeros(len(step), np.bool_)
+        shortened[asked[lost]] = True
+        scale[shortened] *= 0.5
+        again = shortened[triangles].any(axis=1)
+        asked, least = triangles[again], floor[again]
     while True:
         moved = mesh.points + scale[:, None] * step
-        corners = np.unique(triangles[doubled_areas(moved, triangles) <= 0])
+        corners = np.unique(triangles[too_flat(moved, triangles)])
         corners = corners[scale[corners] > 0]
         if not corners.size:
             return moved

@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold._kernels import kernel
+from ninefold.mapping.checks import face_labels, face_permutation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .pieces import Pieces
 
-__all__ = ["Mesh", "doubled_areas", "squared_sides"]
+__all__ = ["Mesh", "doubled_areas", "squared_sides", "too_flat"]
 
 FRAME = 16
 """Corners of the frame."""
@@ -81,7 +82,8 @@ class Mesh:
         self._fixed = np.zeros(room // 2, np.bool_)
         self._fixed[: m // 2] = pieces.real
         self._fixed[m // 2 : m // 2 + FRAME] = True
-        cut = cut_faces.for_work(_STEPS * room)
+        sizes = np.bincount(face_labels(face_permutation(simple.next_ccw))[0]) + FRAME
+        cut = cut_faces.for_work(_STEPS * room + int((sizes**2).sum()) // 2)
         self._used, self.forced = cut(self._tail, self._after, self._before, self.points, used + 2, self._outside)
         self.triangles = np.zeros((0, 3), np.int64)
         self.flip()
@@ -119,7 +121,7 @@ class Mesh:
 
     def bad(self) -> NDArray[np.bool_]:
         """Mark the triangles, (T,), that are the wrong way round, or so flat that rounding could turn them."""
-        return self.areas() <= _FLAT * squared_sides(self.points, self.triangles)
+        return too_flat(self.points, self.triangles)
 
     def near(self, seeds: NDArray[np.int64], rings: int) -> NDArray[np.bool_]:
         """Mark the vertices within some rings of triangles of the seeds; the frame is never among them."""
@@ -147,6 +149,11 @@ def squared_sides(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> 
     """Return the sum of the squared sides of triangles, (T,)."""
     corner = points[triangles]
     return np.asarray(((corner - np.roll(corner, 1, 1)) ** 2).sum(axis=(1, 2)))
+
+
+def too_flat(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Mark the triangles, (T,), that are the wrong way round, or so flat that rounding could turn them."""
+    return np.asarray(doubled_areas(points, triangles) <= _FLAT * squared_sides(points, triangles))
 
 
 @kernel(forceinline=True)
