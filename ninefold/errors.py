@@ -12,7 +12,7 @@ Examples
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ._wording import LONGEST_QUOTE, quoted
 
@@ -38,7 +38,19 @@ __all__ = [
 
 
 class NinefoldError(Exception):
-    """Root of every error that ninefold raises on purpose."""
+    """Root of every error that ninefold raises on purpose. It survives a pickle, so that a worker process can raise it."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[NinefoldError], args: tuple[Any, ...], attributes: dict[str, Any]) -> NinefoldError:
+    """Make an error again without composing its message anew."""
+    # an error with a constructor of its own is made without it; the others' only takes the message
+    error = kind.__new__(kind, *args) if "__init__" in vars(kind) else kind(*args)
+    error.args = args
+    error.__dict__.update(attributes)
+    return error
 
 
 class BadInput(NinefoldError, ValueError):

@@ -101,6 +101,7 @@ def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
             "outer_face": plane.outer_face,
             "outer_edges": _outer_edges(plane),
             "dead_ends": int((plane.degree == 1).sum()),
+            **_measured(plane),
             "origin": found.origin,
             "events": found.n_events,
             "checks": _checks(plane),
@@ -168,6 +169,11 @@ def _outer_edges(plane: "PlaneMap") -> list[str]:
     return [plane.edge_names[e] for e in edges]
 
 
+def _measured(plane: "PlaneMap") -> dict[str, int]:
+    """Return how many edges have a measured length, if any has."""
+    return {} if plane.metres is None else {"measured_lengths": int((plane.metres > 0).sum())}
+
+
 def _checks(plane: "PlaneMap") -> dict[str, Any]:
     """Return what `PlaneMap.validate` has just confirmed, and how well headings and turns agree."""
     checks: dict[str, Any] = {"euler": True, "turning": None, "largest_residual": None, "worst_edge": None}
@@ -191,6 +197,8 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         f"{', ...' if len(outer) > 6 else ''}"
     )
     print(f"dead ends    {facts['dead_ends']}")
+    if "measured_lengths" in facts:
+        print(f"lengths      measured along {facts['measured_lengths']} of {counted(facts['edges'], 'edge')}")
     checks = facts["checks"]
     turning = (
         "no headings"

@@ -30,6 +30,7 @@ def explore(
     exits: Annotated[
         bool, typer.Option("--exits/--no-exits", help="Whether the log tells the exits seen at every place.")
     ] = True,
+    metres: Annotated[bool, typer.Option("--metres", help="Let the log tell the length of every leg too.")] = False,
     tolerance: Annotated[
         float | None, typer.Option(help="Written into the log: headings that differ by less, in radians, count as one.")
     ] = None,
@@ -54,7 +55,9 @@ def explore(
             found = found.without_crossings()
         world = found.to_world()
     with progress("exploring"):
-        robot = walk_in(world, start=start, seed=seed, noise=noise, step=step, exits=exits, tolerance=tolerance)
+        robot = walk_in(
+            world, start=start, seed=seed, noise=noise, step=step, exits=exits, metres=metres, tolerance=tolerance
+        )
     with progress(f"writing {out}"):
         write_walk(robot.walk, out)
     warnings = list(found.notes)

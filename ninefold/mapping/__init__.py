@@ -1,7 +1,7 @@
 """The plane map and how a robot builds it: without coordinates, from places, loop closures and headings alone.
 
 **The value** is `PlaneMap`: dart arrays (`tail`, `next_ccw`), a dart on the outer face, tethers for separate components,
-and the evidence (`heading`, `turn`). Dart ``d`` is half of edge ``d // 2``; ``twin(d) = d ^ 1``; everything turns
+and the evidence (`heading`, `turn`, `metres`). Dart ``d`` is half of edge ``d // 2``; ``twin(d) = d ^ 1``; everything turns
 counter-clockwise and a face lies on the left of its darts.
 
 **The builders.** `PlaneMap.from_darts`, `from_rotation`, `from_geometry` and `from_networkx` check everything and return a

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +16,9 @@ from ninefold._wording import counted
 from ninefold.errors import BadInput, NotPlane
 from ninefold.immutable import Immutable, freeze
 
-from . import checks, select
+from . import _given, checks, select
 from .containment import ContainmentIndex
-from .heading import LARGEST_ANGLE, TAU, Heading
+from .heading import Heading
 from .names import Names
 from .numbering import Dart, Face, Vertex
 from .rotation import read_rotation
@@ -57,6 +56,9 @@ class PlaneMap(Immutable):
     heading, turn
         (2E,) float64 yaw in radians on leaving along the dart, and (E,) float64 net rotation in radians along dart 2e,
         both counter-clockwise and NaN on tethers; or None, None.
+    metres
+        (E,) float64 length that a walk measured along each edge, NaN on tethers and where nothing was measured; None if no
+        edge has one. No answer depends on it.
     vertex_names, edge_names
         Unique labels; edge names cover the E edges, tethers included (which nobody asks for).
 
@@ -78,6 +80,7 @@ class PlaneMap(Immutable):
     tether: NDArray[np.bool_]
     heading: NDArray[np.float64] | None
     turn: NDArray[np.float64] | None
+    metres: NDArray[np.float64] | None
     vertex_names: Names
     edge_names: Names
     _derived: checks.Derived = field(repr=False)
@@ -95,6 +98,7 @@ class PlaneMap(Immutable):
         tether: ArrayLike | None = None,
         heading: ArrayLike | None = None,
         turn: ArrayLike | None = None,
+        metres: ArrayLike | None = None,
         vertex_names: Iterable[str | int] | None = None,
         edge_names: Iterable[str | int] | None = None,
     ) -> PlaneMap:
@@ -113,6 +117,8 @@ class PlaneMap(Immutable):
             (E,) bool; the tethers must join the components of the rest like a tree.
         heading, turn
             (2E,) yaw on leaving and (E,) net rotation, radians counter-clockwise. Both or neither.
+        metres
+            (E,) measured lengths, positive, NaN where unknown; what is given on tethers is left out.
 
         Raises
         ------
@@ -125,15 +131,15 @@ class PlaneMap(Immutable):
         -----
         Complexity O(V + E).
         """
-        tails = _ints("tail", tail)
-        after = _ints("next_ccw", next_ccw)
+        tails = _given.whole_numbers("tail", tail)
+        after = _given.whole_numbers("next_ccw", next_ccw)
         if tails.size % 2 or after.size != tails.size:
             raise BadInput(
                 f"tail has {counted(tails.size, 'entry', 'entries')} and next_ccw {after.size}; both need two for each edge"
             )
         n_edges = tails.size // 2
         total = int(tails.max()) + 1 if tails.size else 0
-        count = total if n_vertices is None else _whole("n_vertices", n_vertices)
+        count = total if n_vertices is None else _given.whole("n_vertices", n_vertices)
         if count < max(total, 1) or (tails.size and int(tails.min()) < 0):
             raise BadInput(
                 "a map has at least one vertex, and tails are numbered from 0 to n_vertices - 1: "
@@ -143,7 +149,7 @@ class PlaneMap(Immutable):
             raise BadInput(f"next_ccw must hold darts from 0 to {tails.size - 1}")
         if count > max(1, 2 * n_edges):  # refused before anything is as large as such a number
             raise BadInput(f"{counted(n_edges, 'edge')} cannot join {count} vertices; tie separate components with tethers")
-        virtual = np.zeros(n_edges, np.bool_) if tether is None else _array("tether", tether, np.bool_)
+        virtual = np.zeros(n_edges, np.bool_) if tether is None else _given.array("tether", tether, np.bool_)
         if virtual.shape != (n_edges,):
             raise BadInput(f"tether has shape {virtual.shape}, not ({n_edges},)")
         v_names = vertex_names if isinstance(vertex_names, Names) else Names("vertex", count, vertex_names)
@@ -153,9 +159,10 @@ class PlaneMap(Immutable):
                 f"{counted(v_names.size, 'vertex name')} and {counted(e_names.size, 'edge name')} for "
                 f"{counted(count, 'vertex', 'vertices')} and {counted(n_edges, 'edge')}; give one name each"
             )
-        angles = _angles(heading, turn, virtual)
-        outer = None if outer is None else _whole("outer", outer)
-        return cls._checked(tails, after, outer, virtual, angles, v_names, e_names)
+        angles = _given.angles(heading, turn, virtual)
+        outer = None if outer is None else _given.whole("outer", outer)
+        lengths = _given.lengths(metres, virtual, e_names)
+        return cls._checked(tails, after, outer, virtual, angles, v_names, e_names, metres=lengths)
 
     @classmethod
     def _checked(
@@ -168,6 +175,8 @@ class PlaneMap(Immutable):
         vertex_names: Names,
         edge_names: Names,
         derived: checks.Derived | None = None,
+        *,
+        metres: NDArray[np.float64] | None = None,
     ) -> PlaneMap:
         """Check rotation, connection, Euler and turning numbers of arrays this map may keep; the last step of all makers."""
         if derived is None:
@@ -184,9 +193,9 @@ class PlaneMap(Immutable):
             components = checks.components_without_tethers(tail, next_ccw, tether, vertex_names.size)
         outer_dart = _outer(outer, angles, tail, next_ccw, tether, components, derived, edge_names)
         heading, turn = angles if angles is not None else (None, None)
-        freeze(tail, next_ccw, tether, heading, turn)
+        freeze(tail, next_ccw, tether, heading, turn, metres)
         freeze(derived.rank, derived.first, derived.next_face, derived.face_of, derived.in_tree, derived.component)
-        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, vertex_names, edge_names, derived)
+        return cls(tail, next_ccw, Dart(outer_dart), tether, heading, turn, metres, vertex_names, edge_names, derived)
 
     @classmethod
     def from_rotation(
@@ -262,7 +271,7 @@ class PlaneMap(Immutable):
         Returns
         -------
         PlaneMap
-            With headings and turns. Coordinates are not kept.
+            With headings and turns. Coordinates are not kept, nor lengths, which a walk measures if any.
 
         Raises
         ------
@@ -477,6 +486,7 @@ class PlaneMap(Immutable):
             tether=self.tether,
             heading=self.heading,
             turn=self.turn,
+            metres=self.metres,
             vertex_names=self.vertex_names,
             edge_names=self.edge_names,
         )
@@ -485,6 +495,7 @@ class PlaneMap(Immutable):
             and np.array_equal(again.next_face, self.next_face)
             and np.array_equal(again.rank, self.rank)
             and again.n_faces == self.n_faces
+            and _same(again.metres, self.metres)
             and self.n_vertices - self.tether.size + self.n_faces == 2
         )
         if not same:
@@ -502,6 +513,7 @@ class PlaneMap(Immutable):
             and np.array_equal(self.tether, other.tether)
             and _same(self.heading, other.heading)
             and _same(self.turn, other.turn)
+            and _same(self.metres, other.metres)
             and self.vertex_names == other.vertex_names
             and self.edge_names == other.edge_names
         )
@@ -544,51 +556,6 @@ def _same(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> bool:
     if a is None or b is None:
         return a is b
     return bool(np.array_equal(a, b, equal_nan=True))
-
-
-def _array(name: str, values: ArrayLike, dtype: type[np.generic] | None = None) -> NDArray[Any]:
-    """Copy what was given into an array, or say that it is none."""
-    try:
-        return np.array(values, dtype=dtype)
-    except (TypeError, ValueError, OverflowError):
-        raise BadInput(f"{name} must be an array of numbers, its rows of one length") from None
-
-
-def _whole(name: str, value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, Integral):
-        raise BadInput(f"{name} is a whole number, not {value!r}")
-    return int(value)
-
-
-def _ints(name: str, values: ArrayLike) -> NDArray[np.int32]:
-    array = _array(name, values)
-    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
-        raise BadInput(f"{name} must be a one-dimensional array of integers, not {array.dtype} of shape {array.shape}")
-    if array.size and (int(array.max()) > 2**31 - 1 or int(array.min()) < -(2**31)):
-        raise BadInput(f"{name} holds numbers beyond 32 bits")
-    return np.array(array, dtype=np.int32)
-
-
-def _angles(
-    heading: ArrayLike | None, turn: ArrayLike | None, tether: NDArray[np.bool_]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    if heading is None and turn is None:
-        return None
-    if heading is None or turn is None:
-        raise BadInput("heading and turn come together: give both or neither")
-    head, turns = _array("heading", heading, np.float64), _array("turn", turn, np.float64)
-    if head.shape != (2 * tether.size,) or turns.shape != (tether.size,):
-        raise BadInput(
-            f"heading has shape {head.shape} and turn {turns.shape}; for {tether.size} edges they are "
-            f"({2 * tether.size},) and ({tether.size},)"
-        )
-    head[np.repeat(tether, 2)] = np.nan
-    turns[tether] = np.nan
-    given = np.concatenate([head[~np.repeat(tether, 2)], turns[~tether]])
-    if not (np.abs(given) <= LARGEST_ANGLE).all():
-        raise BadInput(f"heading and turn must be finite radians, at most {LARGEST_ANGLE:.0f} either way")
-    head -= TAU * np.round(head / TAU)
-    return head, turns
 
 
 def _outer(

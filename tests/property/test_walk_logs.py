@@ -11,6 +11,7 @@ from ninefold.io.walks.json_lines import iter_events, read_header, read_walk, wr
 from ninefold.mapping import Heading, Mapper, Samples, Visit, Walk, WalkHeader
 
 yaws = st.floats(-20, 20)
+metres = st.floats(0, allow_infinity=False)
 labels = st.text(st.characters(min_codepoint=32, exclude_categories=["Cs"]), min_size=1, max_size=6)
 scalars = st.none() | st.booleans() | st.integers(-5, 5) | st.floats(-1, 1) | labels
 
@@ -37,7 +38,10 @@ def walks(draw):
         exits = tuple(Heading(first + k * 2 * math.pi / count) for k in range(count)) if draw(st.booleans()) else None
         events.append(Visit(draw(st.none() | labels), exits, draw(st.none() | labels), time()))
         count = draw(st.integers(1, 3))
-        events += [Samples(tuple(draw(st.lists(yaws, min_size=1, max_size=4))), time()) for _ in range(count)]
+        events += [
+            Samples(tuple(draw(st.lists(yaws, min_size=1, max_size=4))), time(), draw(st.none() | metres))
+            for _ in range(count)
+        ]
     return Walk(header, tuple(events))
 
 
@@ -94,7 +98,7 @@ values = st.recursive(
     max_leaves=6,
 )
 keys = st.sampled_from(
-    ["place", "heading", "headings", "exits", "edge", "t", "version", "ninefold", "compass", "tolerance", "x"]
+    ["place", "heading", "headings", "exits", "edge", "t", "metres", "version", "ninefold", "compass", "tolerance", "x"]
 )
 plausible = st.sampled_from(
     ["a", "b", 3, None, 0, 90.0, [0, 90], [10.5], "bearing-deg", "walk", 1, True, 1e308, [], [1e-300]]

@@ -350,9 +350,9 @@ def test_what_is_no_atlas_is_refused(tmp_path, triangle):
 
 def test_a_newer_format_is_refused(triangle):
     connection = sqlite3.connect(triangle)
-    connection.execute("PRAGMA user_version = 2")
+    connection.execute(f"PRAGMA user_version = {_schema.VERSION + 1}")
     connection.close()
-    with pytest.raises(AtlasError, match="format 2; this ninefold reads up to 1"):
+    with pytest.raises(AtlasError, match="format 3; this ninefold reads up to 2"):
         Atlas.open(triangle)
 
 

@@ -139,6 +139,24 @@ def test_from_a_sample_to_a_relation(tmp_path, run, run_json):
         assert stored.plane == build(read_walk(walk))
 
 
+def test_measured_lengths_are_told_only_where_there_are_some(tmp_path, run, run_json):
+    walk, atlas = tmp_path / "walk.jsonl", tmp_path / "office.atlas"
+    assert run("explore", "sample:office", "-o", walk)[0] == 0
+    assert not any("metres" in event for event in map(json.loads, walk.read_text().splitlines()))
+    assert run("map", walk, "-o", atlas)[0] == 0
+    assert "measured_lengths" not in run_json("info", atlas)[1]
+    assert "lengths " not in run("info", atlas)[1]
+    assert run("explore", "sample:office", "-o", walk, "--metres", "--force")[0] == 0
+    events = [json.loads(line) for line in walk.read_text().splitlines()]
+    assert all(event["metres"] > 0 for event in events if "headings" in event)
+    del events[-2]["metres"]  # the last leg is walked for the first time
+    walk.write_text("\n".join(map(json.dumps, events)))
+    assert run("map", walk, "-o", atlas, "--force")[0] == 0
+    code, found = run_json("info", atlas)
+    assert (code, found["edges"], found["measured_lengths"]) == (0, 11, 10)
+    assert "lengths      measured along 10 of 11 edges" in run("info", atlas)[1]
+
+
 @pytest.mark.parametrize("name", samples.names())
 def test_every_sample_maps_alike_from_geometry_and_from_a_walk(tmp_path, run, run_json, name):
     walk = tmp_path / "walk.jsonl"

@@ -8,7 +8,20 @@ import ninefold as nf
 from ninefold.errors import BadInput
 from ninefold.io import samples
 from ninefold.layout.realization import realize
-from ninefold.reasoner import KnowledgeBase, Network, ask, check, conflict, infer, repair
+from ninefold.reasoner import (
+    KnowledgeBase,
+    Network,
+    ask,
+    check,
+    conflict,
+    count,
+    entails,
+    infer,
+    minimal,
+    repair,
+    scenarios,
+    some_scenario,
+)
 
 NET = Network("rcc8")
 NET.add("kitchen", "house", "inside")
@@ -20,6 +33,11 @@ NET.add("kitchen", "house", "inside")
         check,
         conflict,
         repair,
+        count,
+        minimal,
+        some_scenario,
+        lambda given: next(scenarios(given)),
+        lambda given: entails(given, "a", "inside", "b"),
         lambda given: infer(given, "a", "b"),
         lambda given: ask(given, "inside(kitchen, house)"),
     ],

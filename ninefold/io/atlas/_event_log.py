@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from ._file import AtlasFile
 
-__all__ = ["EventLog", "checked_time", "event_text", "header_text", "put_snapshot", "sentences"]
+__all__ = ["EventLog", "checked_time", "event_text", "header_text", "put_snapshot", "sentences", "tells_metres"]
 
 
 class EventLog:
@@ -93,6 +93,8 @@ class EventLog:
                 for seq, event in enumerate(events, start + 1):
                     time = checked_time(event, time)
                     mapper.step(event)
+                    if tells_metres(event):
+                        _schema.keep_metres(connection)
                     connection.execute("INSERT INTO event VALUES (?, ?)", (seq, event_text(event)))
             self._time, self._seen = time, mapper.n_events
         except BaseException as error:
@@ -195,6 +197,11 @@ def checked_time(event: Event, before: float) -> float:
 def event_text(event: Event) -> str:
     """Return an event as JSON, headings in yaw radians."""
     return json.dumps(event_to_json(event, _STORED_FORM), ensure_ascii=False, allow_nan=False)
+
+
+def tells_metres(event: Event) -> bool:
+    """Whether an event says how far the robot went, which only a file of format 2 may hold."""
+    return isinstance(event, Samples) and event.metres is not None
 
 
 def sentences(warnings: Iterable[str]) -> str:

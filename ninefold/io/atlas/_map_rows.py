@@ -10,7 +10,7 @@ import numpy as np
 from ninefold.errors import AtlasError, NinefoldError
 from ninefold.mapping import Names, PlaneMap
 
-from ._schema import one_line
+from ._schema import keep_metres, keeps_metres, one_line
 
 if TYPE_CHECKING:
     import sqlite3
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["load_map", "store_map"]
 
+_COLUMNS = ("id", "name", "tail", "head", "next_out", "next_back", "heading_out", "heading_back", "turn", "tether")
+_MARKS = ", ".join("?" * len(_COLUMNS))
 _LARGEST_TURN = 1e9  # radians: beyond, a float64 no longer tells directions apart
 
 
@@ -26,7 +28,11 @@ def store_map(connection: sqlite3.Connection, plane: PlaneMap) -> None:
     connection.execute("DELETE FROM vertex")
     connection.execute("DELETE FROM edge")
     connection.executemany("INSERT INTO vertex VALUES (?, ?)", enumerate(_labels(plane.vertex_names)))
-    connection.executemany("INSERT INTO edge VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", _edge_rows(plane))
+    connection.executemany(f"INSERT INTO edge ({', '.join(_COLUMNS)}) VALUES ({_MARKS})", _edge_rows(plane))  # noqa: S608
+    if plane.metres is not None:
+        keep_metres(connection)
+        measured = [(metres, e) for e, metres in enumerate(_nulls(plane.metres)) if metres is not None]
+        connection.executemany("UPDATE edge SET metres = ? WHERE id = ?", measured)
     values = {
         "outer": plane.outer,
         "vertices": plane.n_vertices,
@@ -46,9 +52,8 @@ def load_map(connection: sqlite3.Connection) -> PlaneMap:
     """
     facts = dict(connection.execute("SELECT key, value FROM meta WHERE key IN ('outer', 'vertices', 'edges', 'headings')"))
     vertices = connection.execute("SELECT id, name FROM vertex ORDER BY id").fetchall()
-    edges = connection.execute(
-        "SELECT id, name, tail, head, next_out, next_back, heading_out, heading_back, turn, tether FROM edge ORDER BY id"
-    ).fetchall()
+    metres = "metres" if keeps_metres(connection) else "NULL"
+    edges = connection.execute(f"SELECT {', '.join(_COLUMNS)}, {metres} FROM edge ORDER BY id").fetchall()  # noqa: S608
     if (facts.get("vertices"), facts.get("edges")) != (len(vertices), len(edges)):
         raise AtlasError(
             f"damaged: {len(vertices)} vertices and {len(edges)} edges are stored, and there should be "
@@ -102,7 +107,7 @@ def _assemble(facts: dict[str, Any], vertices: list[tuple[Any, ...]], edges: lis
     if not edges:
         none = np.zeros(0) if facts["headings"] else None
         return PlaneMap.from_darts([], [], n_vertices=len(vertices), heading=none, turn=none, vertex_names=vertex_names)
-    ids, labels, tail, head, next_out, next_back, out, back, turns, tether = zip(*edges, strict=True)
+    ids, labels, tail, head, next_out, next_back, out, back, turns, tether, metres = zip(*edges, strict=True)
     edge_names = _names("edge", ids, labels)
     heading = turn = None
     if facts["headings"]:
@@ -118,6 +123,7 @@ def _assemble(facts: dict[str, Any], vertices: list[tuple[Any, ...]], edges: lis
         tether=_ints(tether) != 0,
         heading=heading,
         turn=turn,
+        metres=np.array(metres, dtype=np.float64),
         vertex_names=vertex_names,
         edge_names=edge_names,
     )

@@ -2,6 +2,9 @@
 
 An atlas is an SQLite database in write-ahead mode. ``PRAGMA application_id`` is `APPLICATION_ID` and ``PRAGMA user_version``
 the format version. Any SQLite tool can read it; the view ``dart`` shows the map in the library's own terms.
+
+A new file is of format 1. One that is given measured lengths becomes format 2, see `keep_metres`; all others stay readable
+for programs that know format 1 alone.
 """
 
 from __future__ import annotations
@@ -22,12 +25,27 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["APPLICATION_ID", "VERSION", "check_file", "connect", "create_tables", "one_line", "reporting", "transaction"]
+__all__ = [
+    "APPLICATION_ID",
+    "VERSION",
+    "check_file",
+    "connect",
+    "create_tables",
+    "keep_metres",
+    "keeps_metres",
+    "one_line",
+    "reporting",
+    "transaction",
+]
 
 APPLICATION_ID = 0x4E39464C
 """The four letters N9FL at byte 68 of the file."""
 
-VERSION = 1
+VERSION = 2
+"""The newest format that is read."""
+
+FIRST_VERSION = 1
+WITH_METRES = 2
 BUSY_SECONDS = 5.0
 
 TABLES = """
@@ -71,6 +89,9 @@ CREATE TABLE provenance (
   id INTEGER PRIMARY KEY, source TEXT NOT NULL, kind TEXT NOT NULL, sha256 TEXT, tool TEXT NOT NULL, made TEXT NOT NULL
 );
 """
+
+METRES = "ALTER TABLE edge ADD COLUMN metres REAL CHECK (metres IS NULL OR metres > 0)"
+"""Format 2: the length that the walk measured along an edge, the mean of its passes; NULL where unknown."""
 
 _MAGIC = b"SQLite format 3\0"
 
@@ -185,11 +206,28 @@ def create_tables(path: Path) -> sqlite3.Connection:
             connection.execute("PRAGMA synchronous = OFF")
             connection.executescript(TABLES)
             connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            connection.execute(f"PRAGMA user_version = {VERSION}")
+            connection.execute(f"PRAGMA user_version = {FIRST_VERSION}")
         except BaseException:
             connection.close()
             raise
     return connection
+
+
+def keeps_metres(connection: sqlite3.Connection) -> bool:
+    """Whether a file has a place for measured lengths."""
+    ((version,),) = connection.execute("PRAGMA user_version").fetchall()
+    return int(version) >= WITH_METRES
+
+
+def keep_metres(connection: sqlite3.Connection) -> None:
+    """Make a file of format 1 one of format 2, inside the caller's transaction; nothing happens to one that is already.
+
+    It is done before the first event with metres is logged: a program that knows format 1 alone would take the event, and
+    store a map without its length as if it were complete.
+    """
+    if not keeps_metres(connection):
+        connection.execute(METRES)
+        connection.execute(f"PRAGMA user_version = {WITH_METRES}")
 
 
 @contextmanager

@@ -22,7 +22,7 @@ from ninefold.mapping.sets import same_map
 
 from . import _schema
 from ._definitions import KINDS, definition_of, set_of
-from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences
+from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences, tells_metres
 from ._file import AtlasFile, put, text_that_can_be_written
 from ._map_rows import store_map
 from .records import Provenance, Statement
@@ -131,6 +131,8 @@ class Atlas:
 
         def fill(connection: sqlite3.Connection) -> None:
             put(connection, origin="walk", header=header_text(walk.header))
+            if any(map(tells_metres, walk.events)):
+                _schema.keep_metres(connection)
             connection.executemany("INSERT INTO event VALUES (?, ?)", rows())
             put_snapshot(connection, mapper)
             _put_provenance(connection, provenance)

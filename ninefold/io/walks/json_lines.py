@@ -5,12 +5,13 @@
     {"ninefold": "walk", "version": 1, "heading": "bearing-deg", "compass": true, "tolerance": 0.02}
     {"place": "hall", "exits": [0, 90, 180]}
     {"heading": 90}
-    {"headings": [88.5, 45, 2]}
+    {"headings": [88.5, 45, 2], "metres": 7.25}
     {"place": "yard", "edge": "back door", "t": 12.5}
 
 ``exits``, ``edge`` (the name of the edge walked to get to the place), ``tolerance`` (radians, whatever the unit of the
-headings) and ``t`` (seconds, never decreasing) are optional; ``"place": null`` is a place not recognised; integers are
-accepted as names; keys not listed here are let pass, and those of the header are kept. Text is UTF-8.
+headings), ``t`` (seconds, never decreasing) and ``metres`` (of the way to a line of headings from the one before, or from
+the place left; finite, not negative) are optional; ``"place": null`` is a place not recognised; integers are accepted as
+names; keys not listed here are let pass, and those of the header are kept. Text is UTF-8.
 """
 
 from __future__ import annotations
@@ -135,6 +136,8 @@ def event_to_json(event: Event, header: WalkHeader) -> dict[str, Any]:
     line: dict[str, Any]
     if isinstance(event, Samples):
         line = {"heading": give(event.yaw[0])} if len(event.yaw) == 1 else {"headings": [give(yaw) for yaw in event.yaw]}
+        if event.metres is not None:
+            line["metres"] = event.metres
     else:
         line = {"place": event.place}
         if event.exits is not None:
@@ -283,6 +286,10 @@ class WalkReader:
         place = found["place"]
         if "heading" in found or "headings" in found:
             self._fail("a place and a heading on one line; give each its own")
+        if found.get("metres") is not None:
+            self._fail(
+                '"metres" on the line of a place; give them with the headings of the leg that was walked to get there'
+            )
         if place is not None:
             place = self._name("vertex", "place", place)
         edge = found.get("edge")
@@ -308,8 +315,9 @@ class WalkReader:
             if type(heading) not in _NUMBER:
                 self._fail(f'"heading" is a number, not {quoted(heading)}')
             t = self._time(found) if "t" in found else None
+            metres = self._metres(found) if "metres" in found else None
             try:
-                samples = Samples((self._yaw(heading),), t)
+                samples = Samples((self._yaw(heading),), t, metres)
             except (OverflowError, ValueError):
                 self._fail(f'"heading" is {self._no_angle([heading])}')
             self._samples += 1
@@ -319,9 +327,9 @@ class WalkReader:
         yaws = self._yaws("headings", found["headings"])
         if not yaws:
             self._fail('"headings" is an empty list; a leg has at least one sample')
-        t = self._time(found)
+        t, metres = self._time(found), self._metres(found)
         self._samples += 1
-        return Samples(yaws, t)
+        return Samples(yaws, t, metres)
 
     def _yaws(self, key: str, numbers: Any) -> tuple[float, ...]:
         if type(numbers) is not list or not _NUMBER.issuperset(map(type, numbers)):
@@ -371,6 +379,16 @@ class WalkReader:
             self._fail(f'"t" goes back from {self._t:g} to {seconds:g}: events out of order')
         self._t = seconds
         return seconds
+
+    def _metres(self, found: dict[str, Any]) -> float | None:
+        metres = found.get("metres")
+        if metres is None:
+            return None
+        if type(metres) not in _NUMBER:
+            self._fail(f'"metres" is a number, not {quoted(metres)}')
+        if not 0 <= metres <= _LARGEST_FLOAT:
+            self._fail(f'"metres" is {"negative" if metres < 0 else "not finite"}')
+        return float(metres)
 
     def _name(self, kind: str, key: str, given: Any) -> str:
         if type(given) is str:

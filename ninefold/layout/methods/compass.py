@@ -77,7 +77,7 @@ def compass(plane: PlaneMap, *, chords: ArrayLike | None = None, curved: bool = 
     """
     if plane.heading is None or plane.turn is None:
         raise BadInput("the map has no headings, so no compass drawing; draw it with layout='relaxed' or 'tutte'")
-    pieces = spread(pieces_of(plane, chords=_checked(plane, chords)))
+    pieces = spread(pieces_of(plane, chords=_checked(plane, chords), metres=plane.metres))
     if pieces.n_vertices < 2:
         return Drawing.from_points(plane, np.zeros((1, 2)), layout="compass")
     if pieces.n_vertices > MOST_VERTICES:

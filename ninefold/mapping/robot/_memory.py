@@ -7,7 +7,7 @@ raised without saying at which event; that is the mapper's to add.
 from __future__ import annotations
 
 from itertools import pairwise
-from math import pi, remainder
+from math import nan, pi, remainder
 from typing import TYPE_CHECKING
 
 from ninefold._wording import counted, quoted, shortened
@@ -47,13 +47,27 @@ class Memory:
         Of places, in the order first seen: name, row by name, directions.
     edge_names, edge_rows, passes
         Of edges, in the order first travelled: name, row by name, number of times travelled.
+    metres, measured
+        Of edges: mean length over the passes that measured it, NaN before the first, and their number.
     grown
         The plane map of all that.
     tolerance, unit
         Radians within which two headings are the same direction; how messages write headings.
     """
 
-    __slots__ = ("edge_names", "edge_rows", "grown", "names", "passes", "rows", "stars", "tolerance", "unit")
+    __slots__ = (
+        "edge_names",
+        "edge_rows",
+        "grown",
+        "measured",
+        "metres",
+        "names",
+        "passes",
+        "rows",
+        "stars",
+        "tolerance",
+        "unit",
+    )
 
     def __init__(self, tolerance: float, unit: Unit = DEGREES) -> None:
         self.tolerance = tolerance
@@ -64,6 +78,8 @@ class Memory:
         self.edge_names: list[str] = []
         self.edge_rows: dict[str, int] = {}
         self.passes: list[int] = []
+        self.metres: list[float] = []
+        self.measured: list[int] = []
         self.grown = GrowingMap()
 
     def fork(self) -> Memory:
@@ -75,6 +91,8 @@ class Memory:
         other.edge_names = self.edge_names.copy()
         other.edge_rows = self.edge_rows.copy()
         other.passes = self.passes.copy()
+        other.metres = self.metres.copy()
+        other.measured = self.measured.copy()
         other.grown = self.grown.fork()
         return other
 
@@ -177,7 +195,7 @@ class Memory:
         return OPEN
 
     def travel(self, d: int, leg: Leg) -> bool:
-        """Refine the headings of a known edge by one more pass, along dart `d`; return whether they changed."""
+        """Refine the headings and length of a known edge by one more pass, along dart `d`; return whether any changed."""
         heading = self.grown.heading
         means = self._means(d, leg)
         self.passes[d >> 1] += 1
@@ -187,7 +205,16 @@ class Memory:
                 self.stars[self.grown.tail[dart]].move(heading[dart], new)
                 changed = True
         self.grown.refine(d, *means)
-        return changed
+        return self._measure(d >> 1, leg) or changed
+
+    def _measure(self, e: int, leg: Leg) -> bool:
+        """Count the length that a pass measured, if it did; return whether the mean changed."""
+        if leg.metres is None:
+            return False
+        before, count = self.metres[e], self.measured[e] + 1
+        self.measured[e] = count
+        self.metres[e] = leg.metres if count == 1 else before + (leg.metres - before) / count
+        return self.metres[e] != before
 
     def grow(self, u: int, place: str, star: Star, leg: Leg, given: str | None) -> tuple[int, bool]:
         """Draw a new edge from `u` to a place; return its row and whether it closed a loop.
@@ -205,11 +232,11 @@ class Memory:
         origin = star if u == v else self.stars[u]
         at_u = origin.before(leg.out, grown.prev)
         if v < 0:
-            e = grown.extend(u, at_u, len(self.names), *leg)
+            e = grown.extend(u, at_u, len(self.names), leg.out, leg.back, leg.turn)
         else:
             at_v = star.before(leg.back, grown.prev)
             try:
-                e = grown.close(u, at_u, v, at_v, *leg)
+                e = grown.close(u, at_u, v, at_v, leg.out, leg.back, leg.turn)
             except NotPlane as error:
                 raise self._explained(error, u, v, at_u, at_v, name, leg) from None
         self.settle(place, star)
@@ -218,6 +245,9 @@ class Memory:
         self.edge_rows[name] = e
         self.edge_names.append(name)
         self.passes.append(1)
+        self.metres.append(nan)
+        self.measured.append(0)
+        self._measure(e, leg)
         return e, v >= 0
 
     # -- evidence held against what is known ---------------------------------------------------------------------------

@@ -6,7 +6,7 @@ places are in doubt reads the same legs and does not.
 
 from __future__ import annotations
 
-from math import pi, remainder
+from math import inf, pi, remainder
 from typing import TYPE_CHECKING, NamedTuple
 
 from ninefold.errors import WalkError, located
@@ -41,11 +41,14 @@ class Leg(NamedTuple):
         Yaw of the way back at the place reached: the opposite of the yaw on arriving.
     turn
         Net rotation on the way, counter-clockwise positive, whole turns included.
+    metres
+        Length of the way, or None unless all of it was measured.
     """
 
     out: float
     back: float
     turn: float
+    metres: float | None = None
 
 
 class LegReader:
@@ -64,23 +67,30 @@ class LegReader:
     >>> leg = reader.finish()
     >>> leg.out, round(leg.turn, 3), reader.started
     (0.0, 1.0, False)
+
+    Notes
+    -----
+    The metres of a leg are those of all its samples together, and unknown if some came without. One sample alone at the
+    beginning may: it was taken at the place left, before any metre.
     """
 
-    __slots__ = ("_first", "_last", "_turn", "_unit")
+    __slots__ = ("_first", "_last", "_measured", "_metres", "_turn", "_unit")
 
     def __init__(self, unit: Unit = DEGREES) -> None:
         self._unit = unit
         self._first: float | None = None
         self._last = 0.0
         self._turn = 0.0
+        self._metres = 0.0
+        self._measured: bool | None = None  # whether all of the way so far; None at the place left
 
     @property
     def started(self) -> bool:
         """Whether samples were taken since the last leg was finished."""
         return self._first is not None
 
-    def take(self, yaws: tuple[float, ...]) -> None:
-        """Take samples, radians, wrapped or not; at least one.
+    def take(self, yaws: tuple[float, ...], metres: float | None = None) -> None:
+        """Take samples, radians, wrapped or not; at least one. With them the metres since the samples before, if measured.
 
         Raises
         ------
@@ -88,6 +98,7 @@ class LegReader:
             If two successive samples differ by half a turn; the leg is then as it was.
         """
         first, last, turn = self._first, self._last, self._turn
+        begins = first is None
         if first is None:
             first = last = yaws[0]
             turn = 0.0
@@ -102,6 +113,14 @@ class LegReader:
             turn += change
             last = yaw
         self._first, self._last, self._turn = first, last, turn
+        if begins:
+            self._metres, self._measured = 0.0, None
+        if metres is None:
+            if not begins or len(yaws) > 1:
+                self._measured = False
+        else:
+            self._metres += metres
+            self._measured = self._measured is not False
 
     def read(self) -> Leg:
         """Return the leg so far, to its last sample; `drop` then begins another.
@@ -109,13 +128,17 @@ class LegReader:
         Raises
         ------
         WalkError
-            If no sample was taken, or the samples are too large to mean an angle.
+            If no sample was taken, the samples are too large to mean an angle, or the metres add up to no length.
         """
         if self._first is None:
             raise WalkError("no heading; a leg has at least one sample")
-        leg = Leg(wrap(self._first), wrap(self._last + pi), self._turn)
-        if abs(whole_turns(*leg)[1]) > 1e-6:
+        leg = Leg(wrap(self._first), wrap(self._last + pi), self._turn, self._metres if self._measured else None)
+        if abs(whole_turns(leg.out, leg.back, leg.turn)[1]) > 1e-6:
             raise WalkError("the headings are numbers so large that their differences mean nothing; give radians")
+        if leg.metres is not None and not 0 < leg.metres < inf:
+            raise WalkError(
+                f"the metres of the leg add up to {leg.metres:g}, and a leg has a length; leave out what was not measured"
+            )
         return leg
 
     def drop(self) -> None:
@@ -132,6 +155,7 @@ class LegReader:
         """Return a reader that goes on from here on its own."""
         other = LegReader(self._unit)
         other._first, other._last, other._turn = self._first, self._last, self._turn
+        other._metres, other._measured = self._metres, self._measured
         return other
 
 
@@ -165,7 +189,7 @@ def read_legs(events: Iterable[Event]) -> tuple[Leg, ...]:
                     legs.append(reader.finish())
                 begun = True
             elif begun:
-                reader.take(event.yaw)
+                reader.take(event.yaw, event.metres)
             else:
                 raise WalkError("a heading before the first place; a walk begins at a place")
         except WalkError as error:

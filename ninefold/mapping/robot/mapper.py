@@ -88,7 +88,7 @@ class Mapper:
     -----
     Edge ``e`` has dart ``2e`` in the direction of its first traversal. A leg whose two headings match the two ends of a
     known edge travels that edge, and refines its headings to the mean of all passes; its net rotation stays that of the
-    first pass, so that `residuals` show how well the passes agree.
+    first pass, so that `residuals` show how well the passes agree. Its length is the mean of the passes that measured one.
 
     Complexity: an event is O(log degree), or O(degree) when exits are given, and a loop closure O(log E) amortised.
 
@@ -210,6 +210,7 @@ class Mapper:
                 n_vertices=len(self._memory.names),
                 heading=np.array(grown.heading, dtype=np.float64),
                 turn=np.array(grown.turn, dtype=np.float64),
+                metres=np.array(self._memory.metres, dtype=np.float64) if any(self._memory.measured) else None,
                 vertex_names=self._memory.names,
                 edge_names=self._memory.edge_names,
             )
@@ -250,7 +251,7 @@ class Mapper:
         """
         try:
             if isinstance(event, Samples):
-                self._sample(event.yaw)
+                self._sample(event)
             elif isinstance(event, Visit):
                 self._visit(event)
             else:
@@ -259,10 +260,10 @@ class Mapper:
             raise located(error, f"event {self._events + 1}", event=self._events + 1) from None
         self._events += 1
 
-    def _sample(self, yaws: tuple[float, ...]) -> None:
+    def _sample(self, event: Samples) -> None:
         if self._at < 0:
             raise WalkError("a heading before the first place; a walk begins at a place")
-        self._leg.take(yaws)
+        self._leg.take(event.yaw, event.metres)
 
     def _visit(self, event: Visit) -> None:
         place, memory = event.place, self._memory

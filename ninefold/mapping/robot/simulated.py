@@ -190,6 +190,7 @@ def explore(
     noise: float = 0.0,
     step: float = 1.0,
     exits: bool = True,
+    metres: bool = False,
     tolerance: float | None = None,
 ) -> Exploration:
     """Walk a world depth-first until every place that can be reached is visited and every way there walked.
@@ -206,6 +207,8 @@ def explore(
         Metres between samples.
     exits
         Whether the log lists the exits of every place.
+    metres
+        Whether the log tells the length of every leg, without error.
     tolerance
         For the header; left out, 0.02, or a third of the narrowest angle between two ways if that is less.
 
@@ -230,7 +233,7 @@ def explore(
     >>> robot.unreached, robot.metres
     ((('2',),), 3.0)
     >>> robot.walk.events[1]
-    Samples(yaw=(0.0, 0.0, 0.0, 0.0), t=None)
+    Samples(yaw=(0.0, 0.0, 0.0, 0.0), t=None, metres=None)
     """
     if not (isinstance(step, int | float) and 0 < step < float("inf")):
         raise BadInput(f"step is a positive number of metres, not {quoted(step)}")
@@ -247,7 +250,15 @@ def explore(
     home = next(part for part in parts if first in part)
     if tolerance is None:
         tolerance = min(DEFAULT_TOLERANCE, world.narrowest / 3)
-    robot = _Robot(world, np.random.default_rng(seed), shuffles=seed is not None, noise=noise, step=step, exits=exits)
+    robot = _Robot(
+        world,
+        np.random.default_rng(seed),
+        shuffles=seed is not None,
+        noise=noise,
+        step=step,
+        exits=exits,
+        measures=metres,
+    )
     robot.run(first, int(ways[home].sum()))
     names = world.vertex_names
     return Exploration(
@@ -262,9 +273,18 @@ class _Robot:
     """Writes the log while it walks."""
 
     def __init__(
-        self, world: SimulatedWorld, rng: np.random.Generator, *, shuffles: bool, noise: float, step: float, exits: bool
+        self,
+        world: SimulatedWorld,
+        rng: np.random.Generator,
+        *,
+        shuffles: bool,
+        noise: float,
+        step: float,
+        exits: bool,
+        measures: bool,
     ) -> None:
         self.world, self.rng, self.shuffles, self.noise, self.step, self.exits = world, rng, shuffles, noise, step, exits
+        self.measures = measures
         self.ends = world.edges.reshape(-1).tolist()
         self.events: list[Event] = []
         self.metres = 0.0
@@ -318,7 +338,7 @@ class _Robot:
             yaw, metres = self.world.sampled(dart, self.step)
             if self.noise:
                 yaw = yaw + self.rng.normal(0.0, self.noise, yaw.size)
-            known = Samples(tuple(yaw.tolist())), metres
+            known = Samples(tuple(yaw.tolist()), metres=metres if self.measures else None), metres
             if not self.noise:
                 self._legs[dart] = known
         return known

@@ -130,6 +130,9 @@ class Samples:
         Radians counter-clockwise from east, wrapped or not; at least one.
     t
         Seconds of the last one, if known.
+    metres
+        Way travelled up to the last one, if measured: since the samples before, or since the place left where these are the
+        first of their leg. Finite and not negative.
 
     Examples
     --------
@@ -139,6 +142,7 @@ class Samples:
 
     yaw: tuple[float, ...]
     t: float | None = None
+    metres: float | None = None
 
     def __post_init__(self) -> None:
         if type(self.yaw) is not tuple:
@@ -153,11 +157,13 @@ class Samples:
             raise WalkError("samples are finite numbers, in radians")
         if max(self.yaw) > LARGEST_ANGLE or min(self.yaw) < -LARGEST_ANGLE:
             raise WalkError(f"a sample of {too_large_an_angle(max(self.yaw, key=abs))}")
+        if self.metres is not None:
+            object.__setattr__(self, "metres", _checked_metres(self.metres))
 
     @classmethod
-    def of(cls, *headings: Heading, t: float | None = None) -> Samples:
+    def of(cls, *headings: Heading, t: float | None = None, metres: float | None = None) -> Samples:
         """Make samples from headings."""
-        return cls(tuple(heading.yaw for heading in headings), t)
+        return cls(tuple(heading.yaw for heading in headings), t, metres)
 
 
 Event: TypeAlias = Visit | Samples
@@ -194,6 +200,15 @@ class Walk:
     def places(self) -> tuple[str | None, ...]:
         """The places in the order visited, repeats and None included."""
         return tuple(event.place for event in self.events if isinstance(event, Visit))
+
+
+def _checked_metres(value: object) -> float:
+    try:
+        if not isinstance(value, bool) and isinstance(value, int | float) and 0 <= value < math.inf:
+            return float(value)
+    except OverflowError:  # an integer beyond every float
+        pass
+    raise WalkError(f"the metres travelled are a finite number that is not negative, not {quoted(value)}")
 
 
 def _label(kind: str, label: object) -> str:

@@ -28,6 +28,7 @@ from ninefold.errors import BadInput, Undecided
 
 from .deciding import decide, undecided
 from .derivation import RecordedClosure
+from .network import require_network
 from .scenario import Scenario
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ def count(net: Network, limit: int = 10_000, *, seed: int = 0) -> Count:
     BadInput
         A limit below 0.
     """
+    require_network(net)
     if limit < 0:
         raise BadInput(f"a limit is a number of scenarios, not {limit}")
     try:
@@ -79,6 +81,7 @@ def some_scenario(net: Network, *, seed: int = 0) -> Scenario | None:
     Undecided
         Nobody has shown that closure decides the calculus, and it refutes nothing.
     """
+    require_network(net)
     decision = decide(net, seed=seed)
     if decision.consistent is None:
         raise undecided(net.calculus)
@@ -112,6 +115,7 @@ def scenarios(net: Network, *, seed: int = 0) -> Iterator[Scenario]:
     ----------
     Between two scenarios O(n^2) closures, and as many checks where labels are outside a tractable class.
     """
+    require_network(net)
     closure = closed(net)
     if closure is None:
         return

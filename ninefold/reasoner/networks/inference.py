@@ -214,6 +214,7 @@ def entails(net: Network, a: str | int, relations: str | int | Iterable[str], b:
     UnknownName, BadInput
         An entity or relation that is not there; an empty set of relations.
     """
+    require_network(net)
     calculus = net.calculus
     i, j = net.index(a), net.index(b)
     rest = calculus.universal & ~calculus.relation(relations)
@@ -328,6 +329,7 @@ def minimal(net: Network, *, seed: int = 0, budget: float | None = None) -> Mini
     ----------
     At most one check for each feasible relation and one for each pair.
     """
+    require_network(net)
     clock = _Clock(budget)
     calculus, n, names = net.calculus, net.n_entities, net.entities
     nothing = np.zeros((n, n), dtype=calculus.base_composition.dtype)
