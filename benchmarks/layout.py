@@ -31,6 +31,7 @@ from ninefold.layout import (
     verify,
 )
 from ninefold.mapping import PlaneMap
+from ninefold.mapping.rigidity import rigid_parts
 
 PEER_UP_TO = 100_000
 SHARES = (0.05, 0.15, 0.3, 0.5, 0.9)
@@ -102,8 +103,8 @@ def noisy(plane: PlaneMap, degrees: float, seed: int = 0) -> np.ndarray:
 
 
 def from_headings(n: int, share: float, degrees: float, seeds: int) -> None:
-    """One row: random maps of one density, drawn from headings alone."""
-    mine, seconds, peers = [], [], []
+    """One row: random maps of one density, drawn from headings; legs in rigid parts of three or more are fixed."""
+    mine, seconds, peers, fixed = [], [], [], []
     for seed in range(seeds):
         points, edges = braced(n, share, seed)
         plane = PlaneMap.from_geometry(points, edges)
@@ -112,6 +113,9 @@ def from_headings(n: int, share: float, degrees: float, seeds: int) -> None:
         if drawing.layout == "compass":  # no fall-back to another
             mine.append(misplacement(drawing, ground))
         seconds.append(took)
+        if not degrees:
+            parts = rigid_parts(edges)
+            fixed.append((np.mean(parts.sizes[parts.part] >= 3), parts.sizes.max() / len(edges)))
         if not degrees and seed < 3 and n <= 5_000:
             peers.append([misplacement(make(plane), ground, turned=True) for make in (tutte, schnyder)])
     row(
@@ -120,6 +124,7 @@ def from_headings(n: int, share: float, degrees: float, seeds: int) -> None:
         *((f"{100 * np.median(mine):.2f} %", f"{100 * max(mine):.2f} %") if mine else ("-", "-")),
         f"{np.median(seconds):.2f}",
         *((f"{100 * peer:.1f} %" for peer in np.median(peers, axis=0)) if peers else ("-", "-")),
+        *((f"{100 * share:.0f} %" for share in np.median(fixed, axis=0)) if fixed else ("-", "-")),
     )
 
 
@@ -176,14 +181,15 @@ def without_headings(n: int, share: float, seeds: int) -> None:
 def likeness() -> None:
     """Drawings from headings against the ground, and relaxed ones against Tutte's; CPU seconds."""
     columns = ("rms", "worst rms", "CPU seconds", "Tutte rms", "Schnyder rms")
+    fixed = ("legs fixed", "largest part")
     compass(PlaneMap.from_geometry(*braced(5_000, 0.5)))
     for degrees in (0, NOISE):
-        title(f"Compass, rms in % of the diagonal; noise {degrees} deg", "plane", *columns)
+        title(f"Compass, rms in % of the diagonal; noise {degrees} deg", "plane", *columns, *fixed)
         for n, seeds in SEEDS.items():
             for share in SHARES:
                 from_headings(n, share, degrees, seeds)
 
-    title("Compass on the bundled worlds", "layout", "median", "95 %", "rms", "CPU seconds", *columns[-2:])
+    title("Compass on the bundled worlds", "layout", "median", "95 %", "rms", *columns[-3:])
     for degrees in (0, NOISE):
         for name in samples.names():
             bundled(name, degrees)
@@ -260,7 +266,7 @@ def main() -> None:
         )
 
     likeness()
-    title("Compass, large", "plane", "rms", "worst rms", "CPU seconds")
+    title("Compass, large", "plane", "rms", "worst rms", "CPU seconds", "", "", "legs fixed", "largest part")
     for share in (0.15, 0.5, 0.9):
         from_headings(50_000, share, 0, 1)
     from_headings(50_000, 0.5, NOISE, 1)
