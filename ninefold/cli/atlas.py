@@ -9,13 +9,20 @@ import typer
 from ninefold._wording import counted
 
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
-from ._output import notes, print_json, progress
+from ._output import note, notes, print_json, progress
 
 if TYPE_CHECKING:
     from ninefold.io import Atlas
+    from ninefold.layout import Rigidity
     from ninefold.mapping import PlaneMap
 
 __all__ = ["info", "map_source", "name"]
+
+FIXED_UP_TO = 50_000
+"""Edges up to which `info` says what the headings fix without being asked: a moment's work."""
+
+TESTED_UP_TO = 5_000
+"""Edges up to which it holds the headings against each other without being asked: a second, and half for each it names."""
 
 
 def map_source(
@@ -52,6 +59,11 @@ def map_source(
             atlas, doubts = _from_source(source, out, drop_crossing=drop_crossing, force=force), []
     with atlas:
         plane, warnings = atlas.plane, (*doubts, *atlas.warnings)
+    if kind == "walk" and plane.heading is not None and plane.n_edges <= TESTED_UP_TO:
+        from ninefold.layout import rigidity
+
+        with progress("holding the headings against each other"):
+            warnings = (*warnings, *rigidity(plane).warnings)
     if as_json:
         print_json({"file": str(out), **_counts(plane), "warnings": list(warnings)})
     else:
@@ -88,7 +100,15 @@ def _from_source(source: str, out: Path, *, drop_crossing: bool, force: bool) ->
     return Atlas.from_map(found.to_map(), out, provenance=origin, warnings=found.notes, force=force)
 
 
-def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
+def info(
+    atlas: AtlasPath,
+    *,
+    rigidity: Annotated[
+        bool,
+        typer.Option("--rigidity", help="Tell what the headings fix on a large map too, which takes a while."),
+    ] = False,
+    as_json: AsJson = False,
+) -> int:
     """Show what an atlas holds: the size of its map, what was checked, the named sets, and where it all came from."""
     from ninefold.io import Atlas
 
@@ -105,6 +125,7 @@ def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
             "origin": found.origin,
             "events": found.n_events,
             "checks": _checks(plane),
+            "fixed": None,
             "names": found.kinds,
             "statements": len(found.statements),
             "provenance": [
@@ -113,6 +134,11 @@ def info(atlas: AtlasPath, *, as_json: AsJson = False) -> int:
             ],
             "warnings": list(found.warnings),
         }
+    with progress("holding the headings against each other"):
+        measured = _fixed_by_headings(plane, asked=rigidity)
+    if measured is not None:
+        facts["fixed"] = measured.counts
+        facts["warnings"] += measured.warnings
     if as_json:
         print_json(facts)
     else:
@@ -188,6 +214,34 @@ def _checks(plane: "PlaneMap") -> dict[str, Any]:
     return checks
 
 
+def _fixed_by_headings(plane: "PlaneMap", *, asked: bool) -> "Rigidity | None":
+    """Return what the headings fix; None for a map without headings, or one that is large if nobody asked."""
+    if plane.heading is None:
+        if asked:
+            note("the map has no headings, so nothing is fixed by them")
+        return None
+    if plane.n_edges > FIXED_UP_TO and not asked:
+        note(f"what the headings fix is left out, with {counted(plane.n_edges, 'edge')}; --rigidity works it out")
+        return None
+    from ninefold.layout import rigidity
+
+    tested = asked or plane.n_edges <= TESTED_UP_TO
+    if not tested:
+        note(f"the headings of {counted(plane.n_edges, 'edge')} were not held against each other; --rigidity does")
+    return rigidity(plane, tested=tested)
+
+
+def _fixed_in_words(counts: dict[str, int]) -> str:
+    """Return the line on what the headings fix."""
+    text = f"{counts['legs']:,} of {counted(counts['all'], 'leg')}"
+    if counts["parts"]:
+        text += f", in {counted(counts['parts'], 'part')} (largest {counts['largest']:,})"
+    for key, noun, what in (("open", "proportion", "open"), ("curved", "leg", "curved")):
+        n = counts[key]
+        text += f"; {counted(n, noun) if n else f'no {noun}'} {'are' if n > 1 else 'is'} {what}"
+    return text
+
+
 def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     outer = facts["outer_edges"]
     print(f"{facts['file']}: {_described(plane)}")
@@ -209,6 +263,8 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         )
     )
     print(f"checks       V - E + F is right; {turning}")
+    if facts["fixed"] is not None:
+        print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
     events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
     print(f"made from    a {facts['origin']}{events}")
     for record in facts["provenance"]:

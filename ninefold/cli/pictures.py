@@ -5,14 +5,21 @@ from typing import Annotated
 
 import typer
 
-from ninefold._wording import counted
+from ninefold._wording import counted, quoted
 
 from ._options import AsJson, AtlasPath, Force
 from ._output import note, notes, print_json, progress
 
 __all__ = ["draw", "verify"]
 
-LayoutName = Annotated[str, typer.Option("--layout", metavar="auto|tutte|schnyder", help="How the map is laid out.")]
+LayoutName = Annotated[
+    str,
+    typer.Option(
+        "--layout",
+        metavar="auto|compass|tutte|schnyder|relaxed",
+        help="How the map is laid out. auto: as its headings say (compass), or without headings, tutte.",
+    ),
+]
 
 
 def draw(
@@ -32,6 +39,16 @@ def draw(
     theme: Annotated[
         str, typer.Option(metavar="auto|light|dark", help="Colours; auto follows the setting of whoever looks at it.")
     ] = "auto",
+    curved: Annotated[
+        bool, typer.Option("--curved", help="In the compass layout, draw every leg as the curve that its headings tell.")
+    ] = False,
+    rigidity: Annotated[
+        bool,
+        typer.Option(
+            "--rigidity",
+            help="Colour the legs by what the headings fix: measured shapes, evened-out lengths, headings that do not fit.",
+        ),
+    ] = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
@@ -42,6 +59,8 @@ def draw(
 
     if out.suffix.lower() != ".svg":
         raise BadInput(f"{shown(out)}: pictures are SVG; name a file that ends in .svg")
+    if curved and layout not in ("auto", "compass"):
+        raise BadInput(f"--curved is for --layout compass, which follows the headings, not for {quoted(layout)}")
     refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
@@ -49,12 +68,16 @@ def draw(
     with progress("drawing"):
         from ninefold import layout as layouts
 
-        drawing = layouts.draw(plane, layout=layout)
-        svg = drawing.to_svg(highlight=sets or None, title=title if title is not None else atlas.stem, theme=theme)
+        measured = layouts.rigidity(plane) if rigidity else None
+        drawing = layouts.compass(plane, curved=True) if curved else layouts.draw(plane, layout=layout)
+        heading = title if title is not None else atlas.stem
+        svg = drawing.to_svg(highlight=sets or None, title=heading, theme=theme, rigidity=measured or False)
         write_text(out, svg, force=force)
-    notes(drawing.notes)
+    said = (*drawing.notes, *(measured.warnings if measured else ()))
+    notes(said)
     if as_json:
-        print_json({"file": str(out), "layout": drawing.layout, "notes": list(drawing.notes)})
+        facts = {"fixed": measured.counts} if measured else {}
+        print_json({"file": str(out), "layout": drawing.layout, "notes": list(said), **facts})
     else:
         print(f"{out}: {plane!r} in the {drawing.layout} layout")
     return 0
@@ -90,7 +113,9 @@ def verify(
     with progress(f"comparing {counted(pairs, 'pair')}"):
         from ninefold import layout as layouts
 
-        report = layouts.verify(plane, seed=seed, n_pairs=pairs, layout=layout)
+        drawing = layouts.draw(plane, layout=layout)
+        report = layouts.verify(plane, seed=seed, n_pairs=pairs, drawing=drawing)
+    notes(drawing.notes)
     if report.disagreements and out is not None:
         with progress("shrinking the first disagreement"):
             svg = report.disagreements[0].minimal().to_svg()
@@ -100,7 +125,8 @@ def verify(
         note(f"{out}: not written, since there is no disagreement to draw")
     if as_json:
         found_problems = [*report.problems, *map(str, report.disagreements[:10])]
-        print_json({"pairs": report.pairs, "agree": report.agree, "wrong": report.wrong, "problems": found_problems})
+        facts = {"pairs": report.pairs, "agree": report.agree, "wrong": report.wrong, "problems": found_problems}
+        print_json({**facts, "layout": drawing.layout, "notes": list(drawing.notes)})
     else:
         print(report)
     return 0 if report.agree else 1

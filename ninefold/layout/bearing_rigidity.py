@@ -15,12 +15,14 @@ Statistics, 1981.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
+from ninefold.immutable import Immutable, frozen_copy
 from ninefold.mapping.rigidity import rigid_parts
 
 from .shaping.directions import FAITHFUL, shape_of_directions
@@ -42,6 +44,7 @@ LEAST_MISS = np.radians(3)
 """Radians up to which a leg's miss is no news, however well the others fit."""
 
 _TIMES = 5.0
+_LEAST_PART = 3
 _LEAST_SIGMA = np.radians(0.1)
 _LEAST_SPARE = 2
 _LEAST_SHARE = 0.1
@@ -51,8 +54,8 @@ _CANDIDATES = 8
 _SHORT = 0.3
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Rigidity:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Rigidity(Immutable):
     """What the headings of a map fix.
 
     Attributes
@@ -76,31 +79,78 @@ class Rigidity:
         Names of legs that the rest contradicts, the worst first.
     """
 
-    plane: PlaneMap = field(repr=False)
-    part: NDArray[np.int64] = field(repr=False)
-    sizes: NDArray[np.int64] = field(repr=False)
+    plane: PlaneMap
+    part: NDArray[np.int64]
+    sizes: NDArray[np.int64]
     freedom: int
-    redundant: NDArray[np.bool_] = field(repr=False)
-    miss: NDArray[np.float64] = field(repr=False)
+    redundant: NDArray[np.bool_]
+    miss: NDArray[np.float64]
     sigma: float = 0.0
     contradicted: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("part", "sizes", "redundant", "miss"):
+            object.__setattr__(self, name, frozen_copy(getattr(self, name)))
 
     @property
     def fixed(self) -> NDArray[np.bool_]:
         """(E,) bool: legs whose length is measured relative to others, those of parts with three legs or more."""
-        known = np.append(self.sizes, 0)[self.part] >= 3
+        known = np.append(self.sizes, 0)[self.part] >= _LEAST_PART
         return np.asarray(known & (self.part >= 0))
 
+    @property
+    def curved(self) -> NDArray[np.bool_]:
+        """(E,) bool: legs that have no one direction, such as curved ones and loops."""
+        return np.asarray((self.part < 0) & ~self.plane.tether)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many: legs fixed, parts that they are in, legs of the largest, proportions open, legs curved."""
+        known = self.sizes[self.sizes >= _LEAST_PART]
+        return {
+            "legs": int(known.sum()),
+            "parts": int(known.size),
+            "largest": int(known[0]) if known.size else 0,
+            "open": self.freedom,
+            "curved": int(self.curved.sum()),
+        }
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One line for each leg that the rest contradicts, the worst first."""
+        return tuple(
+            f"leg {quoted(name)} misses what the other headings say by {self._degrees(name):.0f} degrees: "
+            "it is curved, its heading or one beside it is wrong, or two places were taken for one"
+            for name in self.contradicted
+        )
+
+    def _degrees(self, name: str) -> float:
+        return abs(float(np.degrees(self.miss[self.plane.edge_names.row(name)])))
+
+    def __repr__(self) -> str:
+        found = self.counts
+        parts = [f"{found['legs']} of {counted(self.plane.n_edges, 'leg')} fixed"]
+        if found["parts"]:
+            parts.append(counted(found["parts"], "part"))
+        parts += [f"{found[key]} {key}" for key in ("open", "curved") if found[key]]
+        if self.contradicted:
+            parts.append(f"{len(self.contradicted)} contradicted")
+        return f"Rigidity({', '.join(parts)})"
+
     def __str__(self) -> str:
-        legs, fixed = self.plane.n_edges, int(self.fixed.sum())
-        straight = int((self.part >= 0).sum())
-        text = f"{fixed:,} of {legs:,} legs are in parts whose shape the headings fix"
-        if fixed:
-            text += f", the largest of {int(self.sizes[0]):,}"
-        return f"{text}; {legs - straight:,} legs are curved, and {self.freedom:,} proportions are open"
+        found = self.counts
+        text = f"{found['legs']:,} of {counted(self.plane.n_edges, 'leg')} are in parts whose shape the headings fix"
+        if found["parts"]:
+            text += f", the largest of {found['largest']:,}"
+        curved, proportions = (_are(found["curved"], "leg"), _are(found["open"], "proportion"))
+        return f"{text}; {curved} curved, and {proportions} open"
 
 
-def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT) -> Rigidity:
+def _are(number: int, noun: str) -> str:
+    return f"{counted(number, noun)} {'is' if number == 1 else 'are'}"
+
+
+def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT, tested: bool = True) -> Rigidity:
     """Return what the headings of a map fix, and how far each misses the rest.
 
     Parameters
@@ -108,6 +158,9 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT) -> Rigidity:
     straight
         Radians of net rotation up to which a leg is taken to be straight. A leg that bends and bends back is taken to
         be straight too: nothing in the walk tells.
+    tested
+        Whether to hold the headings against each other. Without it no leg is contradicted and no miss known, and a large
+        map is done many times faster.
 
     Raises
     ------
@@ -127,7 +180,9 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT) -> Rigidity:
     5 of 5 legs are in parts whose shape the headings fix, the largest of 5; 0 legs are curved, and 0 proportions are open
     >>> open_square = PlaneMap.from_geometry(corners, [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> print(rigidity(open_square))
-    0 of 4 legs are in parts whose shape the headings fix; 0 legs are curved, and 1 proportions are open
+    0 of 4 legs are in parts whose shape the headings fix; 0 legs are curved, and 1 proportion is open
+    >>> rigidity(open_square)
+    Rigidity(0 of 4 legs fixed, 1 open)
     """
     if plane.heading is None or plane.turn is None:
         raise BadInput("the map has no headings, so nothing is fixed by them; make it from a walk or from geometry")
@@ -148,10 +203,10 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT) -> Rigidity:
     miss = np.zeros(n_edges)
     sigma = 0.0
     spare = np.bincount(part[redundant], minlength=order.size)
-    tested = (part >= 0) & (np.append(spare, 0)[part] >= _LEAST_SPARE)
+    testable = (part >= 0) & (np.append(spare, 0)[part] >= _LEAST_SPARE)
     contradicted: tuple[int, ...] = ()
-    if tested.any():
-        contradicted, miss, sigma = _snoop(pieces, tested, int(np.count_nonzero(redundant & tested)))
+    if tested and testable.any():
+        contradicted, miss, sigma = _snoop(pieces, testable, int(np.count_nonzero(redundant & testable)))
     names = tuple(plane.edge_names[e] for e in contradicted)
     return Rigidity(plane, part, found.sizes[order], max(found.freedom, 0), redundant, miss, sigma, names)
 

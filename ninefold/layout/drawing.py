@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from ninefold.mapping import PlaneMap, Set
 
+    from .bearing_rigidity import Rigidity
+
 __all__ = ["Drawing"]
 
 
@@ -205,6 +207,7 @@ class Drawing(Immutable):
         labels: bool | None = None,
         theme: str = "auto",
         width: int = 800,
+        rigidity: bool | Rigidity = False,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -221,15 +224,19 @@ class Drawing(Immutable):
             ``"auto"`` follows the reader's light or dark preference; ``"light"`` and ``"dark"`` fix it.
         width
             Pixels.
+        rigidity
+            Colour the edges by what the headings fix: parts whose shape is measured, lengths that are only evened out, and
+            legs that the rest contradicts. True works it out; what `ninefold.layout.rigidity` returned saves that.
 
         Raises
         ------
         BadInput, DifferentMaps
-            For an unknown theme, a width that is not positive, too many highlighted sets, or a set of another map.
+            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
+            `rigidity` for a map without headings.
         """
         from .svg import render
 
-        return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width)
+        return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width, rigidity=rigidity)
 
     def save(self, path: str | Path, **options: Any) -> None:
         """Write the drawing as an SVG file, whole or not at all; a file that is there is replaced. Options as for `to_svg`.
@@ -241,7 +248,13 @@ class Drawing(Immutable):
         """
         write_text(path, self.to_svg(**options), force=True)
 
-    def plot(self, *, highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None, axes: Any = None) -> Any:
+    def plot(
+        self,
+        *,
+        highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
+        rigidity: bool | Rigidity = False,
+        axes: Any = None,
+    ) -> Any:
         """Draw on matplotlib axes and return them; see `ninefold.layout.plot`.
 
         Raises
@@ -251,7 +264,7 @@ class Drawing(Immutable):
         """
         from .plot import plot
 
-        return plot(self, highlight=highlight, axes=axes)
+        return plot(self, highlight=highlight, rigidity=rigidity, axes=axes)
 
     def _repr_svg_(self) -> str:
         return self.to_svg(width=560)

@@ -9,26 +9,34 @@ import numpy as np
 from ninefold.errors import MissingExtra
 from ninefold.mapping import Line, Point, Region
 
+from .leg_classes import leg_classes, rigidity_of
 from .shapes import region_rings
 from .svg import LABELS_UP_TO, named_sets
-from .theme import LIGHT, ROLES
+from .theme import CONTRADICTED, EVENED, FIXED, LIGHT, ROLES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ninefold.mapping import Set
 
+    from .bearing_rigidity import Rigidity
     from .drawing import Drawing
 
 __all__ = ["plot"]
 
 
-def plot(drawing: Drawing, *, highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None, axes: Any = None) -> Any:
+def plot(
+    drawing: Drawing,
+    *,
+    highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
+    rigidity: bool | Rigidity = False,
+    axes: Any = None,
+) -> Any:
     """Draw on matplotlib axes, in map coordinates, and return them.
 
     Parameters
     ----------
-    highlight
+    highlight, rigidity
         As for `Drawing.to_svg`.
     axes
         Axes to draw on; a new figure if left out.
@@ -47,10 +55,16 @@ def plot(drawing: Drawing, *, highlight: Mapping[str, Set] | Iterable[Set] | Set
         raise MissingExtra("plotting on matplotlib axes", "plot") from None
     plane = drawing.plane
     sets = named_sets(drawing, highlight)
+    found = rigidity_of(plane, rigidity)
+    classes = () if found is None else leg_classes(found)
     if axes is None:
         axes = Figure(figsize=(7, 6), layout="constrained").add_subplot()
-    real = np.flatnonzero(~plane.tether).tolist()
-    axes.add_collection(LineCollection([drawing.path(e) for e in real], colors=LIGHT["edge"], linewidths=1.0, zorder=2))
+    for kind in classes:
+        lines = [drawing.path(e) for e in kind.edges]
+        axes.add_collection(LineCollection(lines, label=kind.words, zorder=2, **_look(kind.name)))
+    if found is None:
+        real = np.flatnonzero(~plane.tether).tolist()
+        axes.add_collection(LineCollection([drawing.path(e) for e in real], colors=LIGHT["edge"], linewidths=1.0, zorder=2))
     for k, (label, x) in enumerate(sets):
         match x:
             case Region():
@@ -70,6 +84,17 @@ def plot(drawing: Drawing, *, highlight: Mapping[str, Set] | Iterable[Set] | Set
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.set_axis_off()
-    if sets:
+    if sets or classes:
         axes.legend(loc="best")
     return axes
+
+
+def _look(name: str) -> dict[str, Any]:
+    """Return how a class of legs is drawn."""
+    match name:
+        case "evened":
+            return {"colors": EVENED["light"], "linewidths": 1.0, "linestyles": "dashed"}
+        case "contradicted":
+            return {"colors": CONTRADICTED["light"], "linewidths": 3.5}
+        case _:
+            return {"colors": FIXED["light"][int(name.removeprefix("fixed"))], "linewidths": 1.8}

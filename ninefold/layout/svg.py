@@ -4,12 +4,16 @@ Bounded faces stand on a tinted ground, so the outer face is the paper. Highligh
 given: regions tinted, hatched and outlined (dashed after the first, so that a shared outline shows both), lines broad,
 points as dots. Names appear on small maps only; edges and vertices carry tool tips. A Schnyder drawing lives in a right
 triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
+
+By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
+the rest contradicts broad and on top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,15 +23,20 @@ from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
 from .labels import place_labels, text_width
+from .leg_classes import caption_of, leg_classes, leg_tip, rigidity_of
 from .shapes import region_rings
 from .theme import ROLES, THEMES, style_sheet
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ninefold.mapping import Set
 
+    from .bearing_rigidity import Rigidity
     from .drawing import Drawing
+    from .leg_classes import LegClass
 
 __all__ = ["named_sets", "render"]
 
@@ -53,6 +62,7 @@ def render(
     labels: bool | None = None,
     theme: str = "auto",
     width: int = 800,
+    rigidity: bool | Rigidity = False,
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -60,23 +70,28 @@ def render(
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
+    found = rigidity_of(drawing.plane, rigidity)
+    classes = () if found is None else leg_classes(found)
     page = _Page(drawing, width, title)
+    if found is not None:
+        page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets)),
+        _defs(theme, len(sets), legs=found is not None),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
-        *_edges(page),
+        *(_edges(page) if found is None else []),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
+        *([] if found is None else _classed_edges(page, found, classes)),
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
     ]
     if shown:
         body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
-    legend, height = _legend(page, sets)
+    legend, height = _legend(page, sets, classes, found)
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -135,6 +150,7 @@ class _Page:
         self._low, self._origin = low, np.array([(width - used[0]) / 2, self.bottom - _PAD - max(0.0, (24 - used[1]) / 2)])
         n = max(drawing.plane.n_vertices, 1)
         self.stroke = float(np.clip(14 / n**0.4, 0.35, 1.8))
+        self.band = 0.0  # width of lines and outlines that lie below coloured edges; 0 where they lie on top
         self.dot = float(np.clip(20 / n**0.45, 0.6, 4.5))
 
     def place(self, xy: NDArray[Any]) -> NDArray[np.float64]:
@@ -160,7 +176,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int) -> str:
+def _defs(theme: str, used: int, *, legs: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -168,7 +184,7 @@ def _defs(theme: str, used: int) -> str:
         for k in range(used)
         if _HATCH[k] is not None
     )
-    return f"<style>{style_sheet(theme, used)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+    return f"<style>{style_sheet(theme, used, legs=legs)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
 
 
 def _heading(title: str | None) -> list[str]:
@@ -194,19 +210,23 @@ def _region(page: _Page, k: int, x: Region) -> list[str]:
 
 
 def _outline(page: _Page, k: int, x: Region) -> list[str]:
-    broad = float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
-    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"'
+    broad = page.band or float(np.clip(2.6 * (300 / page.drawing.plane.n_vertices) ** 0.25, 1.0, 2.6))
+    shape = f'fill="none" stroke-width="{broad:.2f}" stroke-dasharray="{_DASH[k]}" stroke-linejoin="round"{_faded(page)}'
     return [f'<path class="s{k}" {shape} d="{page.rings(x)}"/>']
 
 
 def _line(page: _Page, k: int, x: Line) -> list[str]:
     d = "".join(page.path(page.drawing.path(e)) for e in x.edges)
-    broad = max(4.2, 2.4 * page.stroke)
+    broad = max(4.2, 2.4 * page.stroke, 1.4 * page.band)
     shape = f'fill="none" stroke-linecap="round" stroke-linejoin="round" d="{d}"'
     return [
         f'<path class="halo" stroke-width="{broad + 2.4:.2f}" {shape}/>',
-        f'<path class="s{k}" stroke-width="{broad:.2f}" {shape}/>',
+        f'<path class="s{k}" stroke-width="{broad:.2f}"{_faded(page)} {shape}/>',
     ]
+
+
+def _faded(page: _Page) -> str:
+    return ' stroke-opacity="0.45"' if page.band else ""
 
 
 def _edges(page: _Page) -> list[str]:
@@ -218,6 +238,39 @@ def _edges(page: _Page) -> list[str]:
         return [f'<path {shape} d="{"".join(lines)}"/>']
     tips = (f'<path d="{d}"><title>{_escaped(plane.edge_names[e])}</title></path>' for e, d in zip(real, lines, strict=True))
     return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
+
+
+def _classed_edges(page: _Page, found: Rigidity, classes: tuple[LegClass, ...]) -> list[str]:
+    """Return the edges, a group for each class; beyond `TIPS_UP_TO` one path for each."""
+    plane = page.drawing.plane
+    parts = []
+    for kind in classes:
+        shape = f'class="{kind.name}" fill="none" {_leg_look(kind.name, page.stroke)}'
+        lines = [page.path(page.drawing.path(e)) for e in kind.edges]
+        whole = "".join(lines)
+        if kind.name == "contradicted":
+            wide = _leg_width(kind.name, page.stroke) + 2.0
+            parts.append(f'<path class="halo" fill="none" stroke-width="{wide:.2f}" stroke-linejoin="round" d="{whole}"/>')
+        if plane.n_edges > TIPS_UP_TO:
+            parts.append(f'<path {shape} d="{whole}"/>')
+            continue
+        tips = (
+            f'<path d="{d}"><title>{_escaped(f"{plane.edge_names[e]}: {leg_tip(found, kind, e)}")}</title></path>'
+            for e, d in zip(kind.edges, lines, strict=True)
+        )
+        parts.append(f"<g {shape}>{''.join(tips)}</g>")
+    return parts
+
+
+def _leg_width(name: str, stroke: float) -> float:
+    return stroke if name == "evened" else max(4.0, 3 * stroke) if name == "contradicted" else max(1.4, 1.5 * stroke)
+
+
+def _leg_look(name: str, stroke: float) -> str:
+    if name != "evened":
+        return f'stroke-width="{_leg_width(name, stroke):.2f}" stroke-linecap="round" stroke-linejoin="round"'
+    dash = f"{max(2.5, 3.5 * stroke):.1f} {max(1.5, 2 * stroke):.1f}"
+    return f'stroke-width="{_leg_width(name, stroke):.2f}" stroke-dasharray="{dash}" stroke-linejoin="round"'
 
 
 def _vertices(page: _Page) -> list[str]:
@@ -264,25 +317,37 @@ def _names(page: _Page, marked: set[int]) -> list[str]:
     return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
 
 
-def _legend(page: _Page, sets: list[tuple[str, Set]]) -> tuple[list[str], float]:
+def _legend(
+    page: _Page, sets: list[tuple[str, Set]], classes: tuple[LegClass, ...], found: Rigidity | None
+) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
-    for k, (name, s) in enumerate(sets):
-        text = f"{name}: {_kind(s)}"
+    entries: list[tuple[Callable[[float, float], str], str]] = [
+        (partial(_swatch, k, s), f"{name}: {_kind(s)}") for k, (name, s) in enumerate(sets)
+    ]
+    entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in classes]
+    for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
             x, y = _PAD, y + 24
-        parts.append(_swatch(k, s, x, y))
+        parts.append(swatch(x, y))
         parts.append(f'<text class="ink" x="{x + 30:.1f}" y="{y + 4.5:.1f}" font-size="13">{_escaped(text)}</text>')
         x += wide
-    if sets:
+    if entries:
         y += 26
     layout = page.drawing.layout
     caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
+    if found is not None:
+        caption.append(caption_of(found, layout))
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
     return parts, y + 6
+
+
+def _leg_swatch(name: str, x: float, y: float) -> str:
+    way = f"M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"
+    return f'<path class="{name}" fill="none" {_leg_look(name, 1.6)} d="{way}"/>'
 
 
 def _swatch(k: int, s: Set, x: float, y: float) -> str:

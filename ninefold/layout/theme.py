@@ -4,6 +4,10 @@ The role colours are the qualitative palette of Okabe and Ito, which readers wit
 tell apart; its yellow comes last, since it is weak on white, and its black is the map's own. Regions differ in hatching too,
 so that a print in grey still tells them apart.
 
+What the headings of a map fix has colours of its own, `FIXED`, so that sets can be highlighted on top: three for the largest
+parts and one for all others, `EVENED` for legs that nothing measures, and `CONTRADICTED`, a red, for those that the rest
+contradicts. They too stay apart for readers with any of the common deficiencies; the tests hold it by simulation.
+
 References
 ----------
 M. Okabe and K. Ito, Color Universal Design, 2008.
@@ -11,18 +15,22 @@ M. Okabe and K. Ito, Color Universal Design, 2008.
 
 from __future__ import annotations
 
-__all__ = ["DARK", "LIGHT", "ROLES", "THEMES", "style_sheet"]
+__all__ = ["CONTRADICTED", "DARK", "EVENED", "FIXED", "LIGHT", "ROLES", "THEMES", "style_sheet"]
 
 THEMES = ("auto", "light", "dark")
 
 ROLES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
 _ROLES_ON_DARK = ("#56B4E9", "#FF8A3D", "#2BC79A", "#E3A3C6", "#F2B632", "#9AD4F5", "#F0E442")
 
+FIXED = {"light": ("#1450C4", "#2E9E63", "#7A1E6A", "#CA8411"), "dark": ("#5498FF", "#33E6A6", "#D9C8FF", "#FFCC33")}
+EVENED = {"light": "#8C9199", "dark": "#7C848E"}
+CONTRADICTED = {"light": "#B5150F", "dark": "#F2603A"}
+
 LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E2227", "faint": "#6B6F76"}
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], used: int) -> str:
+def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str | None) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -34,19 +42,25 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], used: int) 
         f".name{{fill:{base['ink']};stroke:{base['paper']}}}",
         f".leader{{stroke:{base['faint']}}}",
     ]
-    for k, colour in enumerate(roles[:used]):
+    for k, colour in enumerate(roles):
         rules += [f".f{k}{{fill:{colour}}}", f".s{k}{{stroke:{colour}}}"]
+    if legs is not None:
+        rules += [f".fixed{k}{{stroke:{colour}}}" for k, colour in enumerate(FIXED[legs])]
+        rules += [f".evened{{stroke:{EVENED[legs]}}}", f".contradicted{{stroke:{CONTRADICTED[legs]}}}"]
     return "".join(f"{scope} {rule}" for rule in rules)
 
 
-def style_sheet(theme: str, used: int) -> str:
+def style_sheet(theme: str, used: int, *, legs: bool = False) -> str:
     """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
+
+    With `legs` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``, ``contradicted``.
 
     The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
     the whole page.
     """
     scope = f".ninefold-{theme}"
-    light, dark = _rules(scope, LIGHT, ROLES, used), _rules(scope, DARK, _ROLES_ON_DARK, used)
+    light = _rules(scope, LIGHT, ROLES[:used], "light" if legs else None)
+    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], "dark" if legs else None)
     match theme:
         case "light":
             return light

@@ -76,7 +76,7 @@ def compass(plane: PlaneMap, *, chords: ArrayLike | None = None, curved: bool = 
     >>> hall, desk = (drawing.points[office.vertex_names.row(name)] for name in ("hall", "desk"))
     """
     if plane.heading is None or plane.turn is None:
-        raise BadInput("the map has no headings, so no compass drawing; draw it with layout='relaxed' or 'tutte'")
+        raise BadInput("the map has no headings, so it has no compass drawing; the layouts relaxed and tutte need none")
     pieces = spread(pieces_of(plane, chords=_checked(plane, chords), metres=plane.metres))
     if pieces.n_vertices < 2:
         return Drawing.from_points(plane, np.zeros((1, 2)), layout="compass")
