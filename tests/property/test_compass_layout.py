@@ -1,4 +1,4 @@
-"""Drawings from headings, and relaxed ones, on every kind of map: plane and true to the map, or another layout that says so."""
+"""Drawings from headings, and relaxed ones, on every kind of map: plane and true to it, or another layout that says so."""
 
 from pathlib import Path
 

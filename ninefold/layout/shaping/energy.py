@@ -13,6 +13,7 @@ Transactions on Graphics 40, 2021. K. Hormann and G. Greiner, MIPS: an efficient
 
 from __future__ import annotations
 
+from itertools import count
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -166,20 +167,17 @@ def damped(mesh: Mesh, step: NDArray[np.float64], *, keep: float, rounds: int = 
     triangles, floor = mesh.triangles[good], keep * mesh.areas()[good]
     scale = np.ones(len(step))
     asked, least = triangles, floor  # those with a corner whose step was shortened since they were looked at
-    for _ in range(rounds):
+    for k in count():
         moved = mesh.points + scale[:, None] * step
-        lost = (doubled_areas(moved, asked) < least) | too_flat(moved, asked)
-        if not lost.any():
-            return moved
+        lost = too_flat(moved, asked)
+        if k < rounds:
+            lost |= doubled_areas(moved, asked) < least
         shortened = np.zeros(len(step), np.bool_)
         shortened[asked[lost]] = True
-        scale[shortened] *= 0.5
+        shortened &= scale > 0
+        if not shortened.any():
+            return moved
+        scale[shortened] *= 0.5 if k < rounds else 0.0
         again = shortened[triangles].any(axis=1)
         asked, least = triangles[again], floor[again]
-    while True:
-        moved = mesh.points + scale[:, None] * step
-        corners = np.unique(triangles[too_flat(moved, triangles)])
-        corners = corners[scale[corners] > 0]
-        if not corners.size:
-            return moved
-        scale[corners] = 0.0
+    raise AssertionError("every round stops a point or returns")

@@ -15,6 +15,7 @@ from ninefold._kernels import kernel
 from ninefold.mapping.heading import TAU
 
 from .blocks import block_tree
+from .mesh import doubled_areas
 from .pieces import wrapped
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ _SETTLE_SWEEPS, _SETTLE_STEP, _ENOUGH = 100, 0.6, 1e-4
 _SMALL = 0.5
 """Scale of a block from which, at first, the block that it hangs from is shrunk instead."""
 
+_AT_ONCE = 1000
 _SHRINK_ROUNDS, _SHRINK, _GENTLE, _LEAST = 200, 0.6, 66, 0.01
 
 
@@ -174,12 +176,29 @@ class _Crossings:
             moved = (points[tail] != self._old[tail]).any(axis=1) | (points[head] != self._old[head]).any(axis=1)
         self._old = points
         segments = shapely.linestrings(np.stack([points[tail], points[head]], axis=1))
+        tree = shapely.STRtree(segments)
         rows = np.flatnonzero(moved)
-        i, j = shapely.STRtree(segments).query(segments[rows], predicate="crosses")
-        i = rows[i]
+        found = [np.zeros((2, 0), np.int64)]
+        for part in np.array_split(rows, rows.size // _AT_ONCE + 1):
+            i, j = tree.query(segments[part])
+            found.append(self._crossing(points, part[i], j))
+        i, j = np.concatenate(found, axis=1)
         still = ~(moved[self._pairs // m] | moved[self._pairs % m])
         self._pairs = np.unique(np.concatenate([np.minimum(i, j) * m + np.maximum(i, j), self._pairs[still]]))
         return self._pairs // m, self._pairs % m
+
+    def _crossing(self, points: NDArray[np.float64], i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return those of the pairs of pieces that cross inside both, (2, k)."""
+        tail, head = self._pieces.tail, self._pieces.head
+        a, b, c, d = tail[i], head[i], tail[j], head[j]
+        apart = (a != c) & (a != d) & (b != c) & (b != d)
+        i, j = i[apart], j[apart]
+        a, b, c, d = tail[i], head[i], tail[j], head[j]
+        sides = [
+            doubled_areas(points, np.stack(corners, axis=1)) for corners in ((a, b, c), (a, b, d), (c, d, a), (c, d, b))
+        ]
+        across = (np.sign(sides[0]) * np.sign(sides[1]) < 0) & (np.sign(sides[2]) * np.sign(sides[3]) < 0)
+        return np.stack([i[across], j[across]])
 
 
 @kernel
