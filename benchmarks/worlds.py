@@ -36,6 +36,22 @@ def street_like(n: int, share: float = 2.2, seed: int = 0, *, connected: bool = 
     return points, edges[keep]
 
 
+def braced(n: int, share: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """A random spanning tree of a triangulation and a share of its spare edges: 0 a tree, 1 all of them."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import minimum_spanning_tree
+
+    points, edges = triangulation(n, seed)
+    rng = np.random.default_rng(seed + 1)
+    weights = coo_array((rng.random(len(edges)) + 1, (edges[:, 0], edges[:, 1])), shape=(n, n)).tocsr()
+    tree = minimum_spanning_tree(weights).tocoo()
+    chosen = np.minimum(tree.row, tree.col).astype(np.int64) * n + np.maximum(tree.row, tree.col)
+    kept = np.isin(edges[:, 0] * n + edges[:, 1], chosen)
+    spare = rng.permutation(np.flatnonzero(~kept))
+    kept[spare[: round(share * spare.size)]] = True
+    return points, edges[kept]
+
+
 class Discs:
     """Regions of a triangulated map that fill discs, so that their boundary length can be chosen."""
 

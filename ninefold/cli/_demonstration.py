@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,29 +22,32 @@ from ninefold.io.atlas.atlas import Atlas
 from ninefold.io.atlas.records import Provenance
 from ninefold.io.relations import write_relations
 from ninefold.io.walks.json_lines import read_walk, write_walk
-from ninefold.layout import draw, drawing_problems, side_by_side, verify
+from ninefold.layout import draw, drawing_problems, heading_errors, misplacement, rigidity, side_by_side, verify
 from ninefold.layout.truth import TrueShapes
 from ninefold.mapping import Line, Point, Region, shortest_path
 from ninefold.mapping.robot.simulated import explore
 from ninefold.reasoner import relate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from os import PathLike
 
     from numpy.typing import NDArray
 
+    from ninefold.layout import Drawing
     from ninefold.mapping import PlaneMap, Set
 
 __all__ = ["DemoReport", "Mismatch", "run_demo"]
 
+_STREETS = "helsinki_district"
+_CREDIT = "\N{COPYRIGHT SIGN} OpenStreetMap contributors, ODbL"
 _GROUPS = 60
 _PATHS = 60
 _PAIRS = 20_000
 _ON_DRAWING = 2_000
 _FILES = (
     *("district.walk.jsonl", "district.atlas", "relations.csv"),
-    *("map.svg", "map-schnyder.svg", "streets.svg", "figure8.svg"),
+    *("map.svg", "map-schnyder.svg", "streets.svg", "district-beside.svg", "figure8.svg"),
 )
 
 
@@ -80,6 +83,11 @@ class DemoReport:
         Pairs compared on the map's own drawing, and how many of them differ.
     problems
         What of the map's rotation, faces and outer face differs from the ground's, in words.
+    heading_error
+        Degrees by which the drawn streets run off their headings: the median, and what 95 % of them stay below.
+    misplaced, misplaced_tutte
+        Root mean square distance of the places drawn from headings to where they are, as a share of the diameter, and the
+        same of Tutte's drawing, which knows no headings.
     names
         How often each relation occurred.
     seconds
@@ -99,6 +107,9 @@ class DemoReport:
     drawn: int
     drawn_wrong: int
     problems: tuple[str, ...]
+    heading_error: tuple[float, float]
+    misplaced: float
+    misplaced_tutte: float
     names: dict[str, int]
     seconds: dict[str, float]
     files: dict[str, Path]
@@ -112,7 +123,7 @@ class DemoReport:
 def run_demo(
     out: str | PathLike[str],
     *,
-    source: str = "helsinki_district",
+    source: str = _STREETS,
     seed: int = 1,
     pairs: int = _PAIRS,
     say: Callable[[str], None] = lambda _: None,
@@ -141,7 +152,7 @@ def run_demo(
     folder = Path(out)
     _make_folder(folder)
     files = {name: folder / name for name in _FILES}
-    walk_file, atlas_file, table_file, map_file, grid_file, streets_file, figure_file = files.values()
+    walk_file, atlas_file, table_file, map_file, grid_file, streets_file, beside_file, figure_file = files.values()
     seconds: dict[str, float] = {}
     streets = samples.load(source)
 
@@ -186,21 +197,38 @@ def run_demo(
         say(f"shapely on the true streets disagrees on {len(mismatches):,} pairs.")
     else:
         say(f"shapely on the true streets gives the same nine-intersection for all {len(chosen):,} pairs.")
+    with _timed(seconds, "draw"):
+        drawing = draw(plane)
+        likeness = _likeness(drawing, ground)
+    say(
+        f"Drawn from headings alone ({drawing.layout} layout): streets run as the compass said to {likeness[0]:.2f} degrees "
+        f"(median; 95 % within {likeness[1]:.1f})."
+    )
+    say(
+        f"Places lie {100 * likeness[2]:.1f} % of the diameter from where they are on the ground; "
+        f"{100 * likeness[3]:.1f} % in the Tutte drawing, which knows no headings."
+    )
+    say(f"What the compass fixes: {rigidity(plane)}.")
     with _timed(seconds, "verify"):
-        report = verify(plane, [(sets[i], sets[j]) for i, j in chosen[:: max(1, len(chosen) // _ON_DRAWING)].tolist()])
+        some = chosen[:: max(1, len(chosen) // _ON_DRAWING)].tolist()
+        report = verify(plane, [(sets[i], sets[j]) for i, j in some], drawing=drawing)
         problems += report.problems
     say(
-        f"On a drawing of the map's own, checked to be plane, shapely {'gives the same' if report.agree else 'disagrees'} "
+        f"On that drawing, checked to be plane, shapely {'gives the same' if report.agree else 'disagrees'} "
         f"for {report.pairs:,} pairs{'' if report.agree else f', wrong in {report.wrong:,}'}."
     )
-    with _timed(seconds, "draw"):
+    with _timed(seconds, "pictures"):
         shown = _shown(named)
-        known = f"{source}, as the robot knows it: no coordinates"
-        draw(plane).save(map_file, highlight=shown, title=known)
-        draw(plane, layout="schnyder").save(grid_file, highlight=shown, title=known)
-        ground.save(streets_file, highlight=shown, title=f"{source}, on the ground")
+        known = f"{source}, as the robot drew it from its compass"
+        drawing.save(map_file, highlight=shown, title=known)
+        draw(plane, layout="schnyder").save(grid_file, highlight=shown, title=f"{source} on an integer grid")
+        streets_drawing = replace(ground, notes=(_CREDIT,)) if source == _STREETS else ground
+        on_ground = f"{source}, which the robot never saw"
+        streets_drawing.save(streets_file, highlight=shown, title=on_ground)
+        both = {on_ground: streets_drawing, known: drawing}
+        write_text(beside_file, _beside(both, shown), force=True)
         write_text(figure_file, _figure_eight(), force=True)
-    say("Drew three of the sets on the map, in both layouts, and on the ground; and figure 8 beside its Schnyder drawing.")
+    say("Drew three of the sets on the streets and beside them on the map, and on a grid; and figure 8 beside its own grid.")
     return DemoReport(
         source=source,
         events=len(robot.walk.events),
@@ -213,10 +241,25 @@ def run_demo(
         drawn=report.pairs,
         drawn_wrong=report.wrong,
         problems=problems,
+        heading_error=likeness[:2],
+        misplaced=likeness[2],
+        misplaced_tutte=likeness[3],
         names=found,
         seconds=seconds,
         files=files,
     )
+
+
+def _likeness(drawing: Drawing, ground: Drawing) -> tuple[float, float, float, float]:
+    """Return the figures of `DemoReport.heading_error`, `misplaced` and `misplaced_tutte`."""
+    off = np.degrees(np.abs(heading_errors(drawing)))
+    tutte = misplacement(draw(drawing.plane, layout="tutte"), ground, turned=True)
+    return float(np.nanmedian(off)), float(np.nanpercentile(off, 95)), misplacement(drawing, ground), tutte
+
+
+def _beside(drawings: Mapping[str, Drawing], shown: Mapping[str, Set]) -> str:
+    """Return drawings next to each other, by their titles, with the same sets coloured."""
+    return side_by_side(*(d.to_svg(highlight=shown, title=title, width=670) for title, d in drawings.items()))
 
 
 def _figure_eight() -> str:
@@ -228,7 +271,7 @@ def _figure_eight() -> str:
         "inner cycle": plane.cycle(["v2", "v3", "v6", "v5", "v4"]),
     }
     drawings = {"figure 8": TrueShapes(figure).drawing(plane), "its Schnyder drawing": draw(plane, layout="schnyder")}
-    return side_by_side(*(d.to_svg(highlight=shown, title=title, width=560) for title, d in drawings.items()))
+    return _beside(drawings, shown)
 
 
 def _make_folder(folder: Path) -> None:

@@ -1,10 +1,14 @@
 """Pictures and proof: straight-line drawings of plane maps, their geometry, and the oracle that checks symbolic answers.
 
-**Drawing.** A map has no coordinates; a layout gives it some. `schnyder` puts the vertices on an integer grid, (n - 2) x
-(n - 2) for simple maps, in linear time and at any size; `tutte` gives a rounder picture, and says in the drawing's notes
-where it had to fall back. Both keep the rotation system, the outer face and the hosts of all components; `draw` takes the
-layout by name. Loops and parallel edges get bends (`subdivide`), edges are added inside faces until all are triangles
-(`triangulate`), and dropped afterwards.
+**Drawing.** A map has no coordinates; a layout gives it some. `compass` draws it as the place looks, from headings alone;
+`tutte` puts every vertex amid its neighbours, and `relax` opens the angles of such a drawing; `schnyder` puts the vertices
+on an integer grid, (n - 2) x (n - 2) for simple maps, in linear time and at any size. Where one has to fall back to another,
+the drawing's notes say so. All keep the rotation system, the outer face and the hosts of all components; `draw` takes the
+layout by name. Loops and parallel edges get bends (`subdivide`). What compass and relaxed drawings share is in
+`ninefold.layout.shaping`.
+
+**Measured or evened out.** `rigidity` says which parts of a map have their shape from headings, and which headings the
+rest contradicts. `heading_errors` and `misplacement` say how much a drawing looks like the place.
 
 **Drawing as a value.** `Drawing` holds points and bends. It turns any point, line or region of its map into a valid shapely
 geometry (`shapes`), and shows itself as SVG (`svg`, `labels`, `theme`) or on matplotlib axes (`plot`).
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from .oracle import Disagreement, Report, verify, verify_geometry
     from .planarity import drawing_problems
     from .realization import realize
+    from .resemblance import heading_errors, misplacement
     from .sampling import random_sets, sample_pairs
     from .sheet import side_by_side
     from .shrinking import shrink
@@ -52,6 +57,8 @@ __all__ = [
     "compass",
     "draw",
     "drawing_problems",
+    "heading_errors",
+    "misplacement",
     "random_sets",
     "realize",
     "relax",
@@ -79,6 +86,7 @@ __getattr__, __dir__ = attach(
         "oracle": ("Disagreement", "Report", "verify", "verify_geometry"),
         "planarity": ("drawing_problems",),
         "realization": ("realize",),
+        "resemblance": ("heading_errors", "misplacement"),
         "sampling": ("random_sets", "sample_pairs"),
         "sheet": ("side_by_side",),
         "shrinking": ("shrink",),

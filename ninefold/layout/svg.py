@@ -335,9 +335,10 @@ def _legend(
         x += wide
     if entries:
         y += 26
-    caption = [_counts(page.drawing), f"{page.drawing.layout} layout", *page.drawing.notes]
+    layout = page.drawing.layout
+    caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
     if found is not None:
-        caption.append(caption_of(found, page.drawing.layout))
+        caption.append(caption_of(found, layout))
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16

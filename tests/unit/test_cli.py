@@ -473,9 +473,20 @@ def test_the_demo_agrees_with_the_ground(tmp_path, run, run_json):
     assert found["edges"] == samples.load("helsinki_district").n_edges
     for path in found["files"].values():
         assert os.path.getsize(path) > 1000  # noqa: PTH202
+    median, most = found["heading_error_deg"]
+    assert median < 0.1
+    assert most < 3
+    assert found["misplaced"] < 0.05 < found["misplaced_tutte"]
+    beside = (tmp_path / "out" / "district-beside.svg").read_text("utf-8")
+    assert beside.count("<svg ") == 3
+    assert "which the robot never saw" in beside
+    assert "compass layout" in beside
+    assert "OpenStreetMap" in beside
     code, out, _ = run("demo", "--out", tmp_path / "out", "--pairs", "500")
     assert code == 0
     assert "all 500 pairs" in out
+    assert "of 380 legs are in parts whose shape the headings fix" in out
+    assert "% in the Tutte drawing" in out
     assert str(tmp_path / "out" / "district.atlas") in out
 
 

@@ -70,7 +70,7 @@ def test_chords_of_another_shape_are_turned_down(wrong):
 
 
 def test_a_map_without_headings_is_told_what_to_do():
-    with pytest.raises(BadInput, match="the map has no headings, so no compass drawing; draw it with layout='relaxed'"):
+    with pytest.raises(BadInput, match="so it has no compass drawing; the layouts relaxed and tutte need none"):
         compass(PlaneMap.from_rotation({"a": ["b"], "b": ["a"]}))
 
 

@@ -37,6 +37,9 @@ __all__ = ["curved", "spirals"]
 WIDEST_MISS = np.radians(60)
 """Angle between a piece as drawn and its chord, beyond which it is not bent to its headings."""
 
+SHARP = np.radians(100)
+"""Net rotation above which a leg is drawn as a curve unasked; straight it would lie against what it goes around."""
+
 _STEP = np.radians(7)
 """Turn of the tangent for which one straight piece of a polyline stands."""
 
@@ -99,18 +102,20 @@ def spirals(
 
 
 def curved(drawing: Drawing, pieces: Pieces, *, everything: bool) -> Drawing:
-    """Return a plane drawing with smooth edges: those that had to be bent anyway, or every one that turns.
+    """Return a plane drawing with smooth edges: those that had to be bent anyway or turn sharply, or every one that turns.
 
     Parameters
     ----------
     drawing
         Plane, with straight pieces.
     everything
-        Bend every leg to its headings, not loops and parallel edges alone.
+        Bend every leg to its headings, not those alone.
     """
     plane = drawing.plane
     nodes = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
     wanted = np.full(plane.tether.size, everything) | (np.diff(drawing.bend_start) > 0)
+    if plane.turn is not None:
+        wanted |= np.abs(np.nan_to_num(plane.turn)) > SHARP
     wanted &= ~plane.tether
     paths = _curves(plane, pieces, nodes, wanted)
     while paths:

@@ -27,6 +27,9 @@ __all__ = ["HungBlocks"]
 
 _GAP = np.radians(3)
 _SETTLE_SWEEPS, _SETTLE_STEP, _ENOUGH = 100, 0.6, 1e-4
+_SMALL = 0.5
+"""Scale of a block from which, at first, the block that it hangs from is shrunk instead."""
+
 _AT_ONCE = 1000
 _SHRINK_ROUNDS, _SHRINK, _GENTLE, _LEAST = 200, 0.6, 66, 0.01
 
@@ -145,7 +148,9 @@ class HungBlocks:
                 ways[1].append(y)
         branches = [way[:-1] for way in ways] if x == y else list(ways)
         branches = [way for way in branches if way]
-        ends, tops = [way[0] for way in branches], [way[-1] for way in branches]
+        # from the end upwards: a room at the end of a long corridor gets half as large, then the corridor gets shorter
+        ends = [next((b for b in way if self.scale[b] > _SMALL), way[0]) for way in branches]
+        tops = [way[-1] for way in branches]
         choice = [b for b in (ends if gentle else tops) if self.scale[b] > _LEAST]
         choice = choice or [b for b in tops if self.scale[b] > _LEAST]
         choice = [b for b in choice if b != self.tree.root]

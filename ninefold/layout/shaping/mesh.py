@@ -34,8 +34,8 @@ _FLAT = 1e-9
 """Twice the area over the squared sides, up to which a triangle counts as flat."""
 
 _SWEEPS = 30
-_STEPS = 40
-"""Elementary steps that cutting takes a dart, of the kind `Kernel.for_work` counts."""
+_STEPS, _FLIP_STEPS = 10, 5
+"""Elementary steps that cutting and flipping take a dart, of the kind `Kernel.for_work` counts; measured on streets."""
 
 
 class Mesh:
@@ -82,9 +82,8 @@ class Mesh:
         self._fixed = np.zeros(room // 2, np.bool_)
         self._fixed[: m // 2] = pieces.real
         self._fixed[m // 2 : m // 2 + FRAME] = True
-        self._work = _STEPS * room
         sizes = np.bincount(face_labels(face_permutation(simple.next_ccw))[0]) + FRAME
-        cut = cut_faces.for_work(self._work + int((sizes**2).sum()) // 2)
+        cut = cut_faces.for_work(_STEPS * room + int((sizes**2).sum()) // 2)
         self._used, self.forced = cut(self._tail, self._after, self._before, self.points, used + 2, self._outside)
         self.triangles = np.zeros((0, 3), np.int64)
         self.flip()
@@ -104,7 +103,7 @@ class Mesh:
 
     def flip(self) -> None:
         """Flip diagonals until no flip makes the worse of two triangles better."""
-        run = flip_diagonals.for_work(self._work)
+        run = flip_diagonals.for_work(_FLIP_STEPS * self._tail.size)
         run(self._tail, self._after, self._before, self.points, self._used, self._fixed, _SWEEPS)
         dart = np.arange(self._used)
         second = self._before[dart ^ 1]
