@@ -76,7 +76,7 @@ def test_a_map_without_headings_is_told_what_to_do():
 
 def test_where_no_picture_is_found_the_drawing_says_so(monkeypatch):
     plane = PlaneMap.from_geometry(*braced(20, 0.5, 1))
-    monkeypatch.setattr(module, "plane_picture", lambda pieces: None)
+    monkeypatch.setattr(module, "plane_picture", lambda pieces, **_: None)
     drawing = compass(plane)
     assert drawing.layout == "tutte"
     assert drawing.notes == ("no plane picture with these headings was found; this is the Tutte drawing",)
@@ -107,3 +107,10 @@ def test_one_degree_in_the_district_is_one_degree():
     off = apart(directions(drawing), plane.heading[0::2])[straight]
     assert np.median(off) < 1
     assert np.percentile(off, 95) < 4
+
+
+@pytest.mark.parametrize("long", [1.0, 2.5, 4.0])
+def test_a_braced_rectangle_has_its_measured_proportions(long):
+    corners = [(0.0, 0.0), (long, 0.0), (long, 1.0), (0.0, 1.0)]
+    points = compass(PlaneMap.from_geometry(corners, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])).points
+    assert np.hypot(*(points[1] - points[0])) / np.hypot(*(points[2] - points[1])) == pytest.approx(long, rel=0.005)

@@ -82,7 +82,7 @@ def compass(plane: PlaneMap, *, chords: ArrayLike | None = None, curved: bool = 
         return Drawing.from_points(plane, np.zeros((1, 2)), layout="compass")
     if pieces.n_vertices > MOST_VERTICES:
         return _fallen_back(plane, f"{pieces.n_vertices:,} vertices are too many for a compass drawing")
-    found = plane_picture(pieces)
+    found = plane_picture(pieces, faithful=True)
     if found is None:
         return _fallen_back(plane, "no plane picture with these headings was found")
     mesh = polish(found[0], pieces, found[1])
