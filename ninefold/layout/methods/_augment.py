@@ -11,26 +11,9 @@ import numpy as np
 
 from ninefold._kernels import kernel
 
+from ..corners import join_corners
+
 __all__ = ["close_faces", "fan_faces"]
-
-
-@kernel(inline="always")
-def join_corners(tail, after, before, p, q, used):  # type: ignore[no-untyped-def]
-    """Add an edge, darts used and used + 1, from the corner after dart p to the corner after dart q."""
-    x = used
-    y = used + 1
-    tail[x] = tail[p]
-    tail[y] = tail[q]
-    f = after[p]
-    after[p] = x
-    before[x] = p
-    after[x] = f
-    before[f] = x
-    f = after[q]
-    after[q] = y
-    before[y] = q
-    after[y] = f
-    before[f] = y
 
 
 @kernel

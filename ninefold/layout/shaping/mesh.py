@@ -17,6 +17,8 @@ import numpy as np
 from ninefold._kernels import kernel
 from ninefold.mapping.checks import face_labels, face_permutation
 
+from ..corners import join_corners
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -77,7 +79,7 @@ class Mesh:
         used = m + 2 * FRAME
         self._before[self._after[:used]] = np.arange(used)
         corner = self._eastmost_corner(simple.outer)
-        join.plain(self._tail, self._after, self._before, corner, int(forth[0]), used)
+        join_corners.plain(self._tail, self._after, self._before, corner, int(forth[0]), used)
         self._outside = int(forth[0] + 1)
         self._fixed = np.zeros(room // 2, np.bool_)
         self._fixed[: m // 2] = pieces.real
@@ -180,23 +182,6 @@ def adjacent(tail, after, p, q):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def join(tail, after, before, p, q, x):  # type: ignore[no-untyped-def]
-    """Draw edge x, x + 1 from the corner after dart p to the corner after dart q."""
-    y = x + 1
-    tail[x], tail[y] = tail[p], tail[q]
-    f = after[p]
-    after[p] = x
-    before[x] = p
-    after[x] = f
-    before[f] = x
-    f = after[q]
-    after[q] = y
-    before[y] = q
-    after[y] = f
-    before[f] = y
-
-
-@kernel
 def holds_corner(tail, before, points, p, q, b):  # type: ignore[no-untyped-def]
     """Tell whether the ear from dart p by vertex b to dart q holds another corner of its face."""
     a, c = tail[p], tail[q]
@@ -270,7 +255,7 @@ def cut_faces(tail, after, before, points, used, outside):  # type: ignore[no-un
             least = 1e-3 if fails < size else 0.0
             ear = a != c and quality(points, a, b, c) > least and not adjacent(tail, after, here, q)
             if ear and not holds_corner(tail, before, points, here, q, b):
-                join(tail, after, before, here, q, used)
+                join_corners(tail, after, before, here, q, used)
                 here = before[used ^ 1]
                 used += 2
                 size -= 1
@@ -281,7 +266,7 @@ def cut_faces(tail, after, before, points, used, outside):  # type: ignore[no-un
             if fails > 2 * size:
                 p = best_corner(tail, after, before, points, here, size)
                 q = before[before[p ^ 1] ^ 1]
-                join(tail, after, before, p, q, used)
+                join_corners(tail, after, before, p, q, used)
                 here = used
                 used += 2
                 size -= 1
@@ -316,7 +301,7 @@ def flip_diagonals(tail, after, before, points, used, fixed, sweeps):  # type: i
                 f, g = before[z], after[z]
                 after[f] = g
                 before[g] = f
-            join(tail, after, before, right2, left2, x)
+            join_corners(tail, after, before, right2, left2, x)
             flipped += 1
         total += flipped
         if flipped == 0:
