@@ -25,6 +25,7 @@ from ninefold.errors import BadInput
 from ninefold.immutable import Immutable, frozen_copy
 from ninefold.mapping.rigidity import rigid_parts
 
+from .arguments import require_map
 from .shaping.directions import FAITHFUL, shape_of_directions
 from .shaping.pieces import pieces_of
 
@@ -184,6 +185,7 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT, tested: bool = True
     >>> rigidity(open_square)
     Rigidity(0 of 4 legs fixed, 1 open)
     """
+    require_map(plane, "rigidity")
     if plane.heading is None or plane.turn is None:
         raise BadInput("the map has no headings, so nothing is fixed by them; make it from a walk or from geometry")
     n_edges = plane.tether.size

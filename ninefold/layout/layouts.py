@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from ninefold._wording import quoted
 from ninefold.errors import BadInput
-from ninefold.mapping import Line, PlaneMap, Point, Region
 
+from .arguments import require_map
 from .methods.compass import compass
 from .methods.relax import relax
 from .methods.schnyder import schnyder
@@ -17,7 +17,7 @@ from .methods.tutte import tutte
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from ninefold.mapping import Set
+    from ninefold.mapping import PlaneMap, Set
 
     from .drawing import Drawing
 
@@ -80,8 +80,7 @@ def draw(
     >>> draw(edge, layout="schnyder", highlight=[edge.vertex("a")])
     Drawing(schnyder, PlaneMap(2 vertices, 1 edge, 1 face), highlight X)
     """
-    if not isinstance(plane, PlaneMap):
-        raise BadInput(_no_map(plane))
+    require_map(plane, "draw")
     make = LAYOUTS.get(layout) if isinstance(layout, str) else None
     if make is None:
         near = get_close_matches(str(layout), LAYOUTS, n=1, cutoff=0.4)
@@ -89,13 +88,3 @@ def draw(
         raise BadInput(f"there is no layout named {quoted(layout)}; {hint}the layouts are {', '.join(sorted(LAYOUTS))}")
     drawing = make(plane)
     return drawing if highlight is None else drawing.highlighting(highlight)
-
-
-def _no_map(given: object) -> str:
-    if isinstance(given, Point | Line | Region):
-        return f"draw takes a map, and {quoted(given)} is a set of one: draw(X.plane, highlight=[X]) shows X on its map"
-    if isinstance(getattr(type(given), "plane", None), property):  # a mapper, an atlas
-        return f"draw takes a map, not the {type(given).__name__} that holds one: draw(X.plane)"
-    if hasattr(type(given), "to_map"):
-        return f"draw takes a map, and a {type(given).__name__} makes one: draw(X.to_map())"
-    return f"draw takes a PlaneMap, not {quoted(given)}; nf.read_map reads one from a file"

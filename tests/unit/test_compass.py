@@ -6,7 +6,7 @@ from worlds import braced, jittered
 
 from ninefold.errors import BadInput
 from ninefold.io import samples
-from ninefold.layout import compass, drawing_problems, tutte
+from ninefold.layout import compass, drawing_problems, relax, rigidity, tutte
 from ninefold.layout.methods import compass as module
 from ninefold.mapping import PlaneMap
 
@@ -114,3 +114,16 @@ def test_a_braced_rectangle_has_its_measured_proportions(long):
     corners = [(0.0, 0.0), (long, 0.0), (long, 1.0), (0.0, 1.0)]
     points = compass(PlaneMap.from_geometry(corners, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])).points
     assert np.hypot(*(points[1] - points[0])) / np.hypot(*(points[2] - points[1])) == pytest.approx(long, rel=0.005)
+
+
+def test_what_is_no_map_or_drawing_says_what_to_call():
+    house = samples.load("house").to_map()
+    with pytest.raises(BadInput, match=r"relax takes a drawing of a map: relax\(tutte\(plane\)\)"):
+        relax(house)
+    with pytest.raises(BadInput, match=r"relax takes a Drawing, not 'x'; draw\(plane\) makes one"):
+        relax("x")
+    for call, name in ((compass, "compass"), (rigidity, "rigidity")):
+        with pytest.raises(BadInput, match=rf"{name} takes a PlaneMap, not 'x'"):
+            call("x")
+        with pytest.raises(BadInput, match=rf"{name} takes a map, and a Source makes one: {name}\(X\.to_map\(\)\)"):
+            call(samples.load("house"))

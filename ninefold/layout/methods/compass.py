@@ -16,6 +16,7 @@ import numpy as np
 
 from ninefold.errors import BadInput
 
+from ..arguments import require_map
 from ..drawing import Drawing
 from ..planarity import drawing_problems
 from ..shaping.curves import curved as with_curves
@@ -75,6 +76,7 @@ def compass(plane: PlaneMap, *, chords: ArrayLike | None = None, curved: bool = 
     Drawing(compass, PlaneMap(10 vertices, 11 edges, 3 faces))
     >>> hall, desk = (drawing.points[office.vertex_names.row(name)] for name in ("hall", "desk"))
     """
+    require_map(plane, "compass")
     if plane.heading is None or plane.turn is None:
         raise BadInput("the map has no headings, so it has no compass drawing; the layouts relaxed and tutte need none")
     pieces = spread(pieces_of(plane, chords=_checked(plane, chords), metres=plane.metres))

@@ -12,6 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ninefold._wording import quoted
+from ninefold.errors import BadInput
+from ninefold.mapping import PlaneMap
+
 from ..drawing import Drawing
 from ..planarity import drawing_problems
 from ..shaping.energy import EvenLengths, damped, newton_step
@@ -61,6 +65,7 @@ def relax(drawing: Drawing) -> Drawing:
     >>> relax(tutte(samples.load("house").to_map())).layout
     'relaxed'
     """
+    _require_drawing(drawing)
     plane = drawing.plane
     pieces = pieces_of(plane)
     if pieces.n_vertices < 3:
@@ -125,3 +130,10 @@ def _unevenness(mesh: Mesh, pieces: Pieces) -> float:
     step = (mesh.points[pieces.head] - mesh.points[pieces.tail])[pieces.real]
     length = np.hypot(*step.T)
     return float(length.max() / max(length.min(), 1e-300)) if length.size else 1.0
+
+
+def _require_drawing(given: object) -> None:
+    if isinstance(given, PlaneMap):
+        raise BadInput("relax takes a drawing of a map: relax(tutte(plane)), or draw(plane, layout='relaxed')")
+    if not isinstance(given, Drawing):
+        raise BadInput(f"relax takes a Drawing, not {quoted(given)}; draw(plane) makes one")
