@@ -3,14 +3,13 @@
 A leg that was walked straight has one direction, its heading. Where the directions fix a part of the map (it is
 *parallel-rigid*, see `ninefold.mapping.rigidity`) the proportions of that part in a compass drawing are measured;
 everywhere else they are only evened out. Where there are more directions than are needed they test each other: the part
-is fitted to all of them, those that fit worst counting less and less, and a leg that still misses its heading by far
-more than the others is named. It may have been curved, its heading may be wrong, or it may join two places of which one
-was taken for another: so it is a warning, never a refusal.
+is fitted to all of them, and the leg without which the rest fits best is taken away and named, again and again, as long
+as that explains far more than its share. Such a leg may have been curved, its heading may be wrong, or it may join two
+places of which one was taken for another: so it is a warning, never a refusal.
 
 References
 ----------
-W. Baarda, A testing procedure for use in geodetic networks, 1968 (blunders by residuals). P. J. Huber, Robust
-Statistics, 1981.
+W. Baarda, A testing procedure for use in geodetic networks, 1968 (blunders by residuals).
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from ninefold.immutable import Immutable, frozen_copy
 from ninefold.mapping.rigidity import rigid_parts
 
 from .arguments import require_map
-from .shaping.directions import FAITHFUL, shape_of_directions
+from .shaping.directions import FAITHFUL, along_and_across, shape_of_directions
 from .shaping.pieces import pieces_of
 
 if TYPE_CHECKING:
@@ -192,7 +191,7 @@ def rigidity(plane: PlaneMap, *, straight: float = STRAIGHT, tested: bool = True
     pieces = pieces_of(plane)
     ends = plane.tail.reshape(-1, 2).astype(np.int64)
     bent = np.diff(pieces.simple.bend_start) > 0
-    known = ~plane.tether & ~bent & (np.abs(np.nan_to_num(plane.turn)) <= straight) & (ends[:, 0] != ends[:, 1])
+    known = ~plane.tether & ~bent & (np.abs(np.nan_to_num(plane.turn)) <= straight)  # a loop is bent
     rows = np.flatnonzero(known)
     found = rigid_parts(ends[rows])
     order = np.argsort(-found.sizes, kind="stable")
@@ -229,6 +228,8 @@ def _snoop(pieces: Pieces, tested: NDArray[np.bool_], spare: int) -> tuple[tuple
         errors = _missed(pieces, points)
         cost = float((errors**2).sum())
         sigma = max(np.sqrt(cost / max(left, 1)), _LEAST_SIGMA)
+        if left <= _LEAST_SPARE or len(dropped) >= _MOST:
+            break
         rows = np.flatnonzero(pieces.measured)
         share = _redundancy(pieces, points, rows)
         scaled = np.abs(errors[rows]) / np.sqrt(np.maximum(share, _LEAST_SHARE))
@@ -242,7 +243,7 @@ def _snoop(pieces: Pieces, tested: NDArray[np.bool_], spare: int) -> tuple[tuple
             if remains < best[0]:
                 best = (remains, row, without, fit)
         remains, row, without, fit = best
-        if row < 0 or left <= _LEAST_SPARE or len(dropped) >= _MOST:
+        if row < 0:
             break
         after = max(remains / (left - 1), _LEAST_SIGMA**2)
         alone = abs(float(_missed(replace(without, measured=pieces.measured), fit)[row]))
@@ -261,9 +262,7 @@ def _missed(pieces: Pieces, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Where a piece is shorter than its ends are uncertain, its direction in the fit says nothing.
     """
-    step = points[pieces.head] - points[pieces.tail]
-    t = pieces.along
-    along, across = (step * t).sum(axis=1), step[:, 1] * t[:, 0] - step[:, 0] * t[:, 1]
+    along, across = along_and_across(pieces, points)
     typical = float(np.abs(along[pieces.measured]).mean()) if pieces.measured.any() else 1.0
     return np.where(pieces.measured, np.arctan2(across, np.maximum(along, _SHORT * typical)), 0.0)
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold.errors import BadInput, DifferentMaps
-from ninefold.mapping.heading import TAU
+
+from .shaping.pieces import wrapped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +46,7 @@ def heading_errors(drawing: Drawing) -> NDArray[np.float64]:
     tail, head = plane.tail[0::2], plane.tail[1::2]
     step = (drawing.points[head] - drawing.points[tail]).astype(np.float64)
     said = plane.heading[0::2] + plane.turn / 2
-    off = (np.arctan2(step[:, 1], step[:, 0]) - said + np.pi) % TAU - np.pi
+    off = wrapped(np.arctan2(step[:, 1], step[:, 0]) - said)
     return np.asarray(np.where(plane.tether | (tail == head), np.nan, off))
 
 

@@ -71,10 +71,8 @@ def compass(plane: PlaneMap, *, chords: ArrayLike | None = None, curved: bool = 
     >>> from ninefold.io import samples
     >>> from ninefold.layout import compass
     >>> office = samples.load("office").to_map()
-    >>> drawing = compass(office)
-    >>> drawing
+    >>> compass(office)
     Drawing(compass, PlaneMap(10 vertices, 11 edges, 3 faces))
-    >>> hall, desk = (drawing.points[office.vertex_names.row(name)] for name in ("hall", "desk"))
     """
     require_map(plane, "compass")
     if plane.heading is None or plane.turn is None:

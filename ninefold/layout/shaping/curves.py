@@ -144,12 +144,8 @@ def _curves(
     rows = np.flatnonzero(wanted[pieces.edge] & pieces.measured)
     step = nodes[pieces.head[rows]] - nodes[pieces.tail[rows]]
     drawn = np.arctan2(step[:, 1], step[:, 0])
-    n_edges = plane.tether.size
-    place = np.zeros(pieces.edge.size, np.int64)
-    starts = np.cumsum(count - 1) - (count - 1)
-    place[n_edges:] = np.arange(pieces.edge.size - n_edges) - np.repeat(starts, count - 1) + 1
     share = turn[pieces.edge[rows]] / count[pieces.edge[rows]]
-    middle = plane.heading[0::2][pieces.edge[rows]] + share * (place[rows] + 0.5)
+    middle = plane.heading[0::2][pieces.edge[rows]] + share * (pieces.place[rows] + 0.5)
     mean = wrapped(middle - drawn)
     xy, bend, found = spirals(mean, share)
     possible = found & (np.abs(mean) <= WIDEST_MISS)
@@ -161,9 +157,9 @@ def _curves(
         chosen = xy[at, np.linspace(0, _NODES - 1, n + 1).round().astype(np.int64)[1:-1]]
         (cx, cy), (ux, uy) = nodes[pieces.tail[row]], step[at]
         turned = np.stack([cx + ux * chosen[:, 0] - uy * chosen[:, 1], cy + uy * chosen[:, 0] + ux * chosen[:, 1]], axis=1)
-        inner.setdefault(int(pieces.edge[row]), {})[int(place[row])] = turned
+        inner.setdefault(int(pieces.edge[row]), {})[int(pieces.place[row])] = turned
     paths: dict[int, NDArray[np.float64]] = {}
-    first_bend = plane.n_vertices + starts
+    first_bend = plane.n_vertices + pieces.simple.bend_start
     for e, parts in inner.items():
         if len(parts) < count[e]:
             continue

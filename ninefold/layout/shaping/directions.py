@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from .pieces import Pieces
 
-__all__ = ["FAITHFUL", "LEGIBLE", "FollowHeadings", "Lengths", "heading_errors", "shape_of_directions"]
+__all__ = ["FAITHFUL", "LEGIBLE", "FollowHeadings", "Lengths", "along_and_across", "heading_errors", "shape_of_directions"]
 
 ACROSS, MEASURED = 3.0, 2.0
 """Weights of the angle by which a piece misses its chord, and of a length that was measured."""
@@ -71,16 +71,13 @@ class FollowHeadings:
     ----------
     pieces
         With their chords.
-    trust
-        (M,) what each heading counts, 1 if left out.
     lengths
         How lengths that were not measured are treated.
     """
 
-    def __init__(self, pieces: Pieces, *, trust: NDArray[np.float64] | None = None, lengths: Lengths = LEGIBLE) -> None:
+    def __init__(self, pieces: Pieces, *, lengths: Lengths = LEGIBLE) -> None:
         self._pieces = pieces
         self._lengths = lengths
-        self._trust = np.ones(pieces.chord.size) if trust is None else trust
         self._t = pieces.along
         self._n = np.stack([-self._t[:, 1], self._t[:, 0]], axis=1)
         known = np.isfinite(pieces.metres)
@@ -96,8 +93,7 @@ class FollowHeadings:
 
     def terms(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return A (M, 2, 2) and g (M, 2): the energy of piece m is D' A D / 2 - g' D for its difference D."""
-        step = points[self._pieces.head] - points[self._pieces.tail]
-        along, across = (step * self._t).sum(axis=1), (step * self._n).sum(axis=1)
+        along, across = along_and_across(self._pieces, points)
         known = np.isfinite(self._wanted)
         free = self._lengths
         open_length = np.clip(along, free.shortest, free.longest) * (1 - free.even) + free.even
@@ -109,7 +105,7 @@ class FollowHeadings:
         self, length: NDArray[np.float64], across: NDArray[np.float64], along: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         t, n, on = self._t, self._n, self._pieces.measured
-        w_n, w_t = np.where(on, self._trust * across**2, 0.0), np.where(on, along**2, 0.0)
+        w_n, w_t = np.where(on, across**2, 0.0), np.where(on, along**2, 0.0)
         blocks = w_n[:, None, None] * n[:, :, None] * n[:, None, :] + w_t[:, None, None] * t[:, :, None] * t[:, None, :]
         blocks += np.where(on, 0.0, _LOOSE)[:, None, None] * np.eye(2)
         return blocks, (w_t * length)[:, None] * t
@@ -120,7 +116,6 @@ def shape_of_directions(
     *,
     rounds: int = 15,
     enough: float = 1e-3,
-    trust: NDArray[np.float64] | None = None,
     start: NDArray[np.float64] | None = None,
     lengths: Lengths = LEGIBLE,
 ) -> NDArray[np.float64]:
@@ -130,8 +125,6 @@ def shape_of_directions(
     ----------
     rounds, enough
         Rounds of reweighting, fewer once no coordinate moves by more than `enough`.
-    trust
-        (M,) what each heading counts, 1 if left out.
     start
         (n, 2) picture to take the first weights from.
     lengths
@@ -142,11 +135,12 @@ def shape_of_directions(
     Complexity: a sparse factorisation a round, about O(V^1.5).
     """
     n = pieces.n_vertices
-    pull = FollowHeadings(pieces, trust=trust, lengths=lengths)
+    pull = FollowHeadings(pieces, lengths=lengths)
     free = np.ones(n, np.bool_)
     free[0] = False
     points = np.zeros((n, 2)) if start is None else start
     blocks, wanted = pull.start() if start is None else pull.terms(start)
+    unsized = lengths.even == 0 and not np.isfinite(pieces.metres).any()  # nothing holds the size of the picture
     for k in range(rounds):
         system = System(free)
         system.add_differences(pieces.tail, pieces.head, blocks)
@@ -154,9 +148,7 @@ def shape_of_directions(
         found = system.solve(right, ridge=1e-9)
         if found is None:
             return points
-        if (
-            lengths.even == 0 and not np.isfinite(pieces.metres).any()
-        ):  # nothing else holds the size, and every round of a bad fit would shrink it
+        if unsized:  # every round of a bad fit would shrink it
             step = (found[pieces.head] - found[pieces.tail])[pieces.measured]
             found = found / max(float(np.hypot(*step.T).mean()) if len(step) else 1.0, 1e-9)
         moved = float(np.abs(found - points).max())
@@ -169,7 +161,12 @@ def shape_of_directions(
 
 def heading_errors(pieces: Pieces, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the angle from each piece's chord to the piece as drawn, (M,) radians in (-pi, pi]; 0 where none is wanted."""
+    along, across = along_and_across(pieces, points)
+    return np.where(pieces.measured, np.arctan2(across, along), 0.0)
+
+
+def along_and_across(pieces: Pieces, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how far each piece as drawn goes along its chord, and how far to the left of it, (M,) and (M,)."""
     step = points[pieces.head] - points[pieces.tail]
     t = pieces.along
-    along, across = (step * t).sum(axis=1), step[:, 1] * t[:, 0] - step[:, 0] * t[:, 1]
-    return np.where(pieces.measured, np.arctan2(across, along), 0.0)
+    return (step * t).sum(axis=1), step[:, 1] * t[:, 0] - step[:, 0] * t[:, 1]

@@ -44,8 +44,8 @@ class Pieces:
         The map, loops and parallel edges bent; piece m has darts 2m and 2m + 1 in it.
     tail, head
         (M,) int64, the vertices that piece m joins.
-    edge
-        (M,) int64, the edge of the map that it belongs to.
+    edge, place
+        (M,) int64, the edge of the map that it belongs to, and its place along dart 2e of that edge, from 0.
     chord
         (M,) float64 radians, the direction wanted from tail to head; 0 where none is.
     leaving
@@ -62,6 +62,7 @@ class Pieces:
     tail: NDArray[np.int64]
     head: NDArray[np.int64]
     edge: NDArray[np.int64]
+    place: NDArray[np.int64]
     chord: NDArray[np.float64]
     leaving: NDArray[np.float64]
     measured: NDArray[np.bool_]
@@ -112,7 +113,7 @@ def pieces_of(
     if plane.heading is None or plane.turn is None:
         nothing = np.zeros(edge.size)
         return Pieces(
-            simple, tail, head, edge, nothing, np.zeros(simple.tail.size), np.zeros(edge.size, np.bool_), real, length
+            simple, tail, head, edge, place, nothing, np.zeros(simple.tail.size), np.zeros(edge.size, np.bool_), real, length
         )
     start, turn = plane.heading[0::2], plane.turn
     chord = start[edge] + turn[edge] * (2 * place + 1) / (2 * count[edge])
@@ -128,7 +129,7 @@ def pieces_of(
         length[~(length > 0)] = np.nan
     measured = real & np.isfinite(chord)
     chord, leaving = np.where(measured, chord, 0.0), np.where(np.isfinite(leaving), leaving, 0.0).ravel()
-    return Pieces(simple, tail, head, edge, chord, leaving, measured, real, length)
+    return Pieces(simple, tail, head, edge, place, chord, leaving, measured, real, length)
 
 
 def spread(pieces: Pieces, *, least: float = LEAST_ANGLE) -> Pieces:
