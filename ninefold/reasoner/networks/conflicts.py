@@ -39,13 +39,12 @@ from ninefold.encodings.theory import theory_of
 from ._cores import OutOfTime
 from ._parts import Part
 from .derivation import RecordedClosure
-from .network import require_network
+from .network import Network, require_network
 from .words import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .network import Network
     from .statement import Statement
 
 __all__ = ["Conflict", "Shrinker", "conflict", "part_of"]
@@ -149,8 +148,6 @@ def conflict(net: Network, *, seed: int = 0, budget: float | None = None, known:
 
 def part_of(net: Network, indices: Iterable[int]) -> Network:
     """Return the network of some statements over the entities they speak of, in the order they first come."""
-    from .network import Network
-
     part = Network(net.calculus)
     for k in sorted(indices):
         s = net.statements[k]

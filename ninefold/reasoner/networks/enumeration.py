@@ -28,13 +28,11 @@ from ninefold.errors import BadInput, Undecided
 
 from .deciding import decide, undecided
 from .derivation import RecordedClosure
-from .network import require_network
+from .network import Network, require_network
 from .scenario import Scenario
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from .network import Network
 
 __all__ = ["Count", "count", "scenarios", "some_scenario"]
 
@@ -191,8 +189,6 @@ class _Enumerator:
         """Tell whether the closed network has a scenario; closure says so where it decides."""
         if next(self._undecided(), None) is None:
             return True
-        from .network import Network
-
         calculus, closure = self._net.calculus, self._closure
         present = [
             (i, j, closure.relation(i, j)) for i, j in self._pairs if closure.relation(i, j) != calculus.universal

@@ -39,7 +39,7 @@ from ..engine.tables import Tables
 from .conflicts import Conflict, conflict
 from .consistency import Consistent, Inconsistent, check
 from .deciding import decide, undecided
-from .network import require_network
+from .network import Network, require_network
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -49,7 +49,6 @@ if TYPE_CHECKING:
     from ninefold.encodings.calculus import Calculus
 
     from .deciding import Kind
-    from .network import Network
     from .scenario import Scenario
 
 __all__ = ["SUPPOSED", "Inference", "MinimalNetwork", "entails", "infer", "minimal"]
@@ -294,8 +293,6 @@ class MinimalNetwork:
         BadInput
             The network is inconsistent: no statement allows nothing.
         """
-        from .network import Network
-
         if not self.consistent:
             raise BadInput("an inconsistent network has no minimal network to state; ask for its conflict")
         net = Network(self.calculus)
