@@ -22,6 +22,9 @@ def walks(draw):
         compass=draw(st.booleans()),
         tolerance=draw(st.floats(1e-6, 0.7)),
         extra=draw(st.dictionaries(labels.filter(lambda k: k not in KNOWN), scalars, max_size=2)),
+        sigma=draw(st.none() | st.floats(0, math.pi / 3, exclude_min=True)),
+        drift=draw(st.none() | st.floats(0, math.pi)),
+        exits=draw(st.sampled_from(["any-order", "in-order"])),
     )
     events, t = [], 0.0
 
@@ -45,7 +48,7 @@ def walks(draw):
     return Walk(header, tuple(events))
 
 
-KNOWN = {"ninefold", "version", "heading", "compass", "tolerance"}
+KNOWN = {"ninefold", "version", "heading", "compass", "tolerance", "sigma", "drift", "exits"}
 
 
 @settings(max_examples=200, deadline=None)
@@ -98,10 +101,25 @@ values = st.recursive(
     max_leaves=6,
 )
 keys = st.sampled_from(
-    ["place", "heading", "headings", "exits", "edge", "t", "metres", "version", "ninefold", "compass", "tolerance", "x"]
+    [
+        "place",
+        "heading",
+        "headings",
+        "exits",
+        "edge",
+        "t",
+        "metres",
+        "version",
+        "ninefold",
+        "compass",
+        "tolerance",
+        "sigma",
+        "drift",
+        "x",
+    ]
 )
 plausible = st.sampled_from(
-    ["a", "b", 3, None, 0, 90.0, [0, 90], [10.5], "bearing-deg", "walk", 1, True, 1e308, [], [1e-300]]
+    ["a", "b", 3, None, 0, 90.0, [0, 90], [10.5], "bearing-deg", "in-order", "walk", 1, True, 0.5, 1e308, [], [1e-300]]
 )
 
 

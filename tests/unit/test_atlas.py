@@ -7,6 +7,7 @@ import os
 import sqlite3
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -84,6 +85,20 @@ def test_events_appended_one_by_one_make_the_same_atlas(tmp_path):
         assert atlas.plane == build(Walk(WalkHeader(), TRIANGLE))
         assert atlas.walk.events == TRIANGLE
         assert [record.source for record in atlas.provenance] == ["robot 7"]
+
+
+def test_declared_noise_stays_in_the_atlas(tmp_path):
+    header = WalkHeader("bearing-deg", sigma=0.035, drift=0.01, exits="in-order", extra={"robot": "r2"})
+    walk = Walk(
+        header, (Visit("a", (Heading.from_bearing(300), Heading.from_bearing(90), Heading.from_bearing(45))), *TRIANGLE[1:])
+    )
+    Atlas.from_walk(walk, tmp_path / "whole.atlas").close()
+    Atlas.create(tmp_path / "live.atlas", header=header).close()
+    for name in ("whole", "live"):
+        with Atlas.open(tmp_path / f"{name}.atlas", writable=False) as atlas:
+            assert atlas.walk.header == replace(header, heading="yaw-rad")
+    with Atlas.open(tmp_path / "whole.atlas") as atlas:
+        assert atlas.walk.events[0].exits == walk.events[0].exits  # in the order given
 
 
 def test_what_is_no_event_is_refused_and_not_stored(tmp_path):

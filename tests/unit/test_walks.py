@@ -6,12 +6,14 @@ import math
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
-from ninefold.errors import NinefoldError, WalkError
+from ninefold.errors import AmbiguousDart, NinefoldError, WalkError
 from ninefold.io.walks.json_lines import WalkReader, iter_events, read_header, read_walk, write_walk
-from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader
+from ninefold.mapping import Heading, Mapper, Samples, Visit, Walk, WalkHeader
+from ninefold.mapping.robot.walk import checked_drift, checked_sigma
 
 try:
     import resource
@@ -63,6 +65,38 @@ def test_the_header_is_kept(log):
     assert read_walk(path, tolerance=0.05).header.tolerance == 0.05
 
 
+def test_declared_noise_is_read_and_written(log, tmp_path):
+    path = log(
+        header='{"ninefold":"walk","version":1,"heading":"bearing-deg","sigma":0.035,"drift":0,"exits":"in-order","robot":"r2"}'
+    )
+    header = read_walk(path).header
+    assert header == WalkHeader("bearing-deg", sigma=0.035, drift=0.0, exits="in-order", extra={"robot": "r2"})
+    assert read_walk(path, tolerance=0.05).header == replace(header, tolerance=0.05)
+    write_walk(Walk(header, (Visit("a"),)), tmp_path / "again.jsonl")
+    assert read_header(tmp_path / "again.jsonl") == header
+    first = json.loads((tmp_path / "again.jsonl").read_text().splitlines()[0])
+    assert (first["sigma"], first["drift"], first["exits"]) == (0.035, 0.0, "in-order")
+
+
+def test_a_header_that_declares_nothing_is_written_as_ever(tmp_path):
+    write_walk(Walk(WalkHeader(), ()), tmp_path / "w.jsonl")
+    assert list(json.loads((tmp_path / "w.jsonl").read_text())) == ["ninefold", "version", "heading", "compass", "tolerance"]
+    silent = '{"ninefold":"walk","version":1,"heading":"yaw-rad","sigma":null,"drift":null,"exits":"any-order"}'
+    (tmp_path / "w.jsonl").write_text(silent)
+    assert read_header(tmp_path / "w.jsonl") == WalkHeader()
+
+
+def test_exits_in_a_near_tie_are_evidence_where_sigma_is_declared(log):
+    line = '{"place": "a", "exits": [2, 1.01, 1, 3.14, -3.14]}'
+    declared = HEADER.replace("}", ', "sigma": 0.05}')
+    walk = read_walk(log(line, header=declared))
+    assert [heading.yaw for heading in walk.events[0].exits] == [2, 1.01, 1, 3.14, -3.14]
+    with pytest.raises(AmbiguousDart, match=r"event 1: .*within the tolerance"):  # the exact mapper takes no notice of sigma
+        Mapper(walk.header).step(walk.events[0])
+    with pytest.raises(WalkError, match="line 2: two exits"):
+        read_walk(log(line, header=HEADER.replace("}", ', "drift": 0.05, "exits": "in-order"}')))
+
+
 @pytest.mark.parametrize(
     ("unit", "east", "north"), [("yaw-rad", 0, math.pi / 2), ("yaw-deg", 0, 90), ("bearing-deg", 90, 0)]
 )
@@ -112,6 +146,26 @@ def test_a_byte_order_mark_and_white_space_are_let_pass(log, line):
         ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": 2}', "a tolerance is an angle"),
         ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": NaN}', "NaN is no number"),
         ('{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "tolerance": 1e-999}', "a tolerance is an angle"),
+        *[
+            (f'{{"ninefold": "walk", "version": 1, "heading": "yaw-rad", "{key}": {value}}}', f"line 1: {message}")
+            for key, value, message in (
+                ("sigma", 0, "sigma is the standard deviation of a heading in radians, .* for 2 degrees, not 0$"),
+                ("sigma", -0.1, "sigma is .* not -0.1$"),
+                ("sigma", 1.05, "sigma is .* at most 1.047 .60 degrees., .* not 1.05$"),
+                ("sigma", '"2 deg"', "sigma is .* not '2 deg'$"),
+                ("sigma", "true", "sigma is .* not True$"),
+                ("sigma", "1" + "0" * 400, "sigma is .* not 1000"),
+                ("sigma", "[0.1]", 'the header\'s "sigma" cannot be'),
+                ("sigma", "NaN", "NaN is no number"),
+                ("drift", -0.1, "drift is .* from 0 to 3.1416 .180 degrees., .* not -0.1$"),
+                ("drift", 3.15, "drift is .* not 3.15$"),
+                ("drift", "1e999", "drift is .* not inf$"),
+                ("drift", "false", "drift is .* not False$"),
+                ("exits", '"ccw"', "the header's \"exits\" is 'any-order' or 'in-order', not 'ccw'$"),
+                ("exits", "null", "the header's \"exits\" is 'any-order' or 'in-order', not None$"),
+                ("exits", '["in-order"]', 'the header\'s "exits" cannot be'),
+            )
+        ],
     ],
 )
 def test_headers_refused(log, header, message):
@@ -317,3 +371,16 @@ def test_numbers_too_large_for_an_angle_are_named_with_their_line(tmp_path, unit
         read_walk(path)
     assert f"line {where}: " in str(caught.value)
     assert f"too large for an angle: {'-' if '-1' in line else ''}1e+300, and angles go up to {limit}" in str(caught.value)
+
+
+def test_the_limits_of_declared_noise():
+    assert checked_sigma(math.radians(60)) == math.radians(60)
+    assert checked_sigma(1) == 1.0
+    assert isinstance(checked_sigma(1), float)
+    assert (checked_drift(0), checked_drift(math.pi)) == (0.0, math.pi)
+    for value in (0, -1, math.radians(60.001), math.nan, math.inf, True, None, "1"):
+        with pytest.raises(WalkError, match="sigma is the standard deviation"):
+            checked_sigma(value)
+    for value in (-1e-9, math.radians(180.001), math.nan, math.inf, False, None, "1"):
+        with pytest.raises(WalkError, match="drift is the standard deviation"):
+            checked_drift(value)

@@ -12,6 +12,9 @@
 headings), ``t`` (seconds, never decreasing) and ``metres`` (of the way to a line of headings from the one before, or from
 the place left; finite, not negative) are optional; ``"place": null`` is a place not recognised; integers are accepted as
 names; keys not listed here are let pass, and those of the header are kept. Text is UTF-8.
+
+The header may also declare noise: ``sigma`` and ``drift`` (radians), and ``"exits": "in-order"``; see `WalkHeader`. Where it
+declares sigma, exits nearer to each other than the tolerance are let pass as evidence: the `Mapper` still refuses them.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from __future__ import annotations
 import json
 import sys
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -65,7 +69,8 @@ def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None) -
     path
         A file as described in this module's text.
     tolerance
-        Radians, instead of the header's: no two exits of a place may be closer. The header returned holds it.
+        Radians, instead of the header's: no two exits of a place may be closer, unless the header declares sigma. The
+        header returned holds it.
 
     Raises
     ------
@@ -119,13 +124,23 @@ def write_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
 
 
 def header_to_json(header: WalkHeader) -> dict[str, Any]:
-    """Return the JSON object of a header."""
+    """Return the JSON object of a header; sigma, drift and the order of exits only where it declares them."""
+    declared = {
+        key: value
+        for key, value, silent in (
+            ("sigma", header.sigma, None),
+            ("drift", header.drift, None),
+            ("exits", header.exits, "any-order"),
+        )
+        if value != silent
+    }
     return {
         "ninefold": "walk",
         "version": WALK_VERSION,
         "heading": header.heading,
         "compass": header.compass,
         "tolerance": header.tolerance,
+        **declared,
         **{key: value for key, value in header.extra.items() if key not in _HEADER_KEYS},
     }
 
@@ -149,7 +164,8 @@ def event_to_json(event: Event, header: WalkHeader) -> dict[str, Any]:
     return line
 
 
-_HEADER_KEYS = frozenset(("ninefold", "version", "heading", "compass", "tolerance"))
+_HEADER_FIELDS = ("heading", "compass", "tolerance", "sigma", "drift", "exits")
+_HEADER_KEYS = frozenset(("ninefold", "version", *_HEADER_FIELDS))
 
 
 class WalkReader:
@@ -256,7 +272,7 @@ class WalkReader:
 
     def _begin(self, header: WalkHeader) -> None:
         if self._tolerance is not None and self._tolerance != header.tolerance:
-            header = WalkHeader(header.heading, header.compass, self._tolerance, header.extra)
+            header = replace(header, tolerance=self._tolerance)
         self._header = header
         self._unit = unit_of(header.heading)
         self._yaw = self._unit.to_yaw
@@ -272,11 +288,11 @@ class WalkReader:
             self._fail(f"the walk has format version {version}, newer than {WALK_VERSION}; update ninefold to read it")
         if "heading" not in found:
             self._fail('the header lacks "heading": one of "yaw-rad", "yaw-deg", "bearing-deg"')
-        for key in ("heading", "compass", "tolerance"):
+        for key in _HEADER_FIELDS:
             if key in found and type(found[key]) in (dict, list):
                 self._fail(f'the header\'s "{key}" cannot be {quoted(found[key])}')
         extra = {key: value for key, value in found.items() if key not in _HEADER_KEYS}
-        given = {key: found[key] for key in ("heading", "compass", "tolerance") if key in found}
+        given = {key: found[key] for key in _HEADER_FIELDS if key in found}
         try:
             return WalkHeader(**given, extra=extra)
         except WalkError as error:
@@ -299,7 +315,8 @@ class WalkReader:
         headings = None
         if exits is not None:
             headings = tuple(map(Heading, self._yaws("exits", exits)))
-            self._check_exits(headings)
+            if self._header is None or self._header.sigma is None:
+                self._check_exits(headings)
         if self._visits and not self._samples:
             self._fail("two places with no heading between them; a leg has at least one sample")
         t = self._time(found)

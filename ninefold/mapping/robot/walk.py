@@ -19,14 +19,30 @@ from ..heading import LARGEST_ANGLE, Heading, too_large_an_angle
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["DEFAULT_TOLERANCE", "Event", "HeadingUnit", "Samples", "Visit", "Walk", "WalkHeader", "checked_tolerance"]
+__all__ = [
+    "DEFAULT_TOLERANCE",
+    "Event",
+    "ExitOrder",
+    "HeadingUnit",
+    "Samples",
+    "Visit",
+    "Walk",
+    "WalkHeader",
+    "checked_drift",
+    "checked_sigma",
+    "checked_tolerance",
+]
 
 DEFAULT_TOLERANCE = 0.02
 """Radians within which two headings at one place are taken for the same dart."""
 
 LARGEST_TOLERANCE = math.pi / 4
+LARGEST_SIGMA = math.pi / 3
+LARGEST_DRIFT = math.pi
 
 HeadingUnit: TypeAlias = Literal["yaw-rad", "yaw-deg", "bearing-deg"]
+
+ExitOrder: TypeAlias = Literal["any-order", "in-order"]
 
 
 def checked_tolerance(value: float) -> float:
@@ -40,6 +56,38 @@ def checked_tolerance(value: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < LARGEST_TOLERANCE:
         raise WalkError(
             f"a tolerance is an angle in radians between 0 and pi/4, such as {DEFAULT_TOLERANCE}, not {quoted(value)}"
+        )
+    return float(value)
+
+
+def checked_sigma(value: float) -> float:
+    """Return the standard deviation of a heading, in radians, or say why it is none.
+
+    Raises
+    ------
+    WalkError
+        Unless 0 < value <= pi / 3, which is 60 degrees.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= LARGEST_SIGMA:
+        raise WalkError(
+            "sigma is the standard deviation of a heading in radians, above 0 and at most 1.047 (60 degrees), such as 0.035 "
+            f"for 2 degrees, not {quoted(value)}"
+        )
+    return float(value)
+
+
+def checked_drift(value: float) -> float:
+    """Return the standard deviation of a slow common bias of headings, in radians, or say why it is none.
+
+    Raises
+    ------
+    WalkError
+        Unless 0 <= value <= pi, which is half a turn.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= LARGEST_DRIFT:
+        raise WalkError(
+            "drift is the standard deviation of a slow bias of all headings in radians, from 0 to 3.1416 (180 degrees), "
+            f"such as 0.035 for 2 degrees, not {quoted(value)}"
         )
     return float(value)
 
@@ -59,17 +107,39 @@ class WalkHeader:
         Radians within which two headings at one place are the same dart.
     extra
         Other keys of the header, kept as they are.
+    sigma
+        Declared standard deviation of a single heading, radians in (0, pi / 3]: what the compass errs by, each reading by
+        itself. None where nothing is declared.
+    drift
+        Declared standard deviation of a bias that all readings at one place share and that changes slowly, radians in
+        [0, pi]. None where nothing is declared.
+    exits
+        ``"in-order"``: every list of exits is in the true cyclic order, counter-clockwise as seen from above whatever the
+        unit of the headings, beginning anywhere, so only the headings err. ``"any-order"``: the order says nothing.
+
+    Notes
+    -----
+    `sigma`, `drift` and `exits` are evidence for readers of noisy walks; `Mapper` takes headings as they are and heeds the
+    tolerance alone.
 
     Raises
     ------
     WalkError
-        For an unknown unit or a tolerance outside (0, pi / 4).
+        For an unknown unit or order of exits, a tolerance outside (0, pi / 4), a sigma or drift out of its range.
+
+    Examples
+    --------
+    >>> WalkHeader(sigma=0.035, exits="in-order").sigma
+    0.035
     """
 
     heading: HeadingUnit = "yaw-rad"
     compass: bool = True
     tolerance: float = DEFAULT_TOLERANCE
     extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    sigma: float | None = field(default=None, kw_only=True)
+    drift: float | None = field(default=None, kw_only=True)
+    exits: ExitOrder = field(default="any-order", kw_only=True)
 
     def __post_init__(self) -> None:
         if self.heading not in get_args(HeadingUnit):
@@ -77,7 +147,14 @@ class WalkHeader:
             raise WalkError(f'the header\'s "heading" is one of {known}, not {quoted(self.heading)}')
         if not isinstance(self.compass, bool):
             raise WalkError(f'the header\'s "compass" is true or false, not {quoted(self.compass)}')
+        if self.exits not in get_args(ExitOrder):
+            known = " or ".join(map(repr, get_args(ExitOrder)))
+            raise WalkError(f'the header\'s "exits" is {known}, not {quoted(self.exits)}')
         object.__setattr__(self, "tolerance", checked_tolerance(self.tolerance))
+        if self.sigma is not None:
+            object.__setattr__(self, "sigma", checked_sigma(self.sigma))
+        if self.drift is not None:
+            object.__setattr__(self, "drift", checked_drift(self.drift))
         object.__setattr__(self, "extra", MappingProxyType(dict(self.extra)))
 
 
@@ -90,7 +167,8 @@ class Visit:
     place
         The place's name, integers accepted, or None for a place that was not recognised.
     exits
-        Headings of all ways out, in any order, or None if they were not looked for.
+        Headings of all ways out, or None if they were not looked for. In any order, unless the header says ``"in-order"``;
+        the order given is kept.
     edge
         Name of the edge walked to get here, or None to have it named ``e0``, ``e1``, ... in the order of first traversal.
     t
