@@ -1,7 +1,7 @@
 """``ninefold explore``: a simulated robot walks a source with geometry."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -9,6 +9,9 @@ from ninefold._wording import counted, quoted
 
 from ._options import AsJson, DropCrossing, Force, SourceText
 from ._output import note, notes, print_json, progress
+
+if TYPE_CHECKING:
+    from ninefold.mapping.robot.simulated import Tour
 
 __all__ = ["explore"]
 
@@ -25,11 +28,29 @@ def explore(
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of random choices; left out, exits are taken in a fixed order.")
     ] = None,
-    noise: Annotated[float, typer.Option(min=0.0, help="Standard deviation of the error of a heading, in radians.")] = 0.0,
+    noise: Annotated[
+        float,
+        typer.Option(
+            min=0.0, help="Standard deviation of the error of a heading, each by itself, in radians (0.035 is 2 degrees)."
+        ),
+    ] = 0.0,
+    drift: Annotated[
+        float,
+        typer.Option(min=0.0, help="That of a bias common to all headings at one place, which changes slowly; in radians."),
+    ] = 0.0,
+    tour: Annotated[
+        str,
+        typer.Option(metavar="depth-first|covering", help="Where to go next: back the way it came, or the nearest new way."),
+    ] = "depth-first",
+    tours: Annotated[int, typer.Option(min=1, help="How often to walk every way anew.")] = 1,
     step: Annotated[float, typer.Option(help="Metres between two samples of the heading.")] = 1.0,
     exits: Annotated[
         bool, typer.Option("--exits/--no-exits", help="Whether the log tells the exits seen at every place.")
     ] = True,
+    ordered_exits: Annotated[
+        bool,
+        typer.Option("--ordered-exits", help="List exits in their true order, counter-clockwise, whatever their headings."),
+    ] = False,
     metres: Annotated[bool, typer.Option("--metres", help="Let the log tell the length of every leg too.")] = False,
     tolerance: Annotated[
         float | None, typer.Option(help="Written into the log: headings that differ by less, in radians, count as one.")
@@ -56,7 +77,18 @@ def explore(
         world = found.to_world()
     with progress("exploring"):
         robot = walk_in(
-            world, start=start, seed=seed, noise=noise, step=step, exits=exits, metres=metres, tolerance=tolerance
+            world,
+            start=start,
+            seed=seed,
+            noise=noise,
+            drift=drift,
+            tour=cast("Tour", tour),
+            tours=tours,
+            step=step,
+            exits=exits,
+            ordered_exits=ordered_exits,
+            metres=metres,
+            tolerance=tolerance,
         )
     with progress(f"writing {out}"):
         write_walk(robot.walk, out)
@@ -78,6 +110,8 @@ def explore(
                 "events": len(robot.walk.events),
                 "metres": round(robot.metres, 3),
                 "tolerance": robot.walk.header.tolerance,
+                "sigma": robot.walk.header.sigma,
+                "drift": robot.walk.header.drift,
                 "crossings": sum(crossing.places for crossing in found.crossings),
                 "unreached": [list(part) for part in robot.unreached],
                 "warnings": warnings,

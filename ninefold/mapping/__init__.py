@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from .numbering import Dart, Edge, Face, Vertex
     from .plane import PlaneMap
     from .robot.mapper import Closure, Mapper, build
-    from .robot.simulated import Exploration, SimulatedWorld, explore
+    from .robot.simulated import Exploration, explore
+    from .robot.simulated_world import SimulatedWorld
     from .robot.walk import Event, Samples, Visit, Walk, WalkHeader
     from .sets import Line, Point, Region, Set
 
@@ -72,7 +73,8 @@ __getattr__, __dir__ = attach(
         "numbering": ("Dart", "Edge", "Face", "Vertex"),
         "plane": ("PlaneMap",),
         "robot.mapper": ("Closure", "Mapper", "build"),
-        "robot.simulated": ("Exploration", "SimulatedWorld", "explore"),
+        "robot.simulated": ("Exploration", "explore"),
+        "robot.simulated_world": ("SimulatedWorld",),
         "robot.walk": ("Event", "Samples", "Visit", "Walk", "WalkHeader"),
         "sets": ("Line", "Point", "Region", "Set"),
     },

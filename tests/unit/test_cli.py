@@ -139,6 +139,17 @@ def test_from_a_sample_to_a_relation(tmp_path, run, run_json):
         assert stored.plane == build(read_walk(walk))
 
 
+def test_explore_with_a_compass_that_errs(run_json, tmp_path):
+    walk = tmp_path / "walk.jsonl"
+    options = {"noise": 0.05, "drift": 0.02, "tour": "covering", "tours": 2}
+    flags = [text for key, value in options.items() for text in (f"--{key}", value)]
+    code, found = run_json("explore", "sample:office", "-o", walk, "--seed", 4, *flags, "--ordered-exits", "--step", 2)
+    assert (code, found["sigma"], found["drift"]) == (0, 0.05, 0.02)
+    world = samples.load("office").to_world()
+    assert read_walk(walk) == explore(world, seed=4, step=2, ordered_exits=True, **options).walk
+    assert read_walk(walk).header == WalkHeader(tolerance=found["tolerance"], sigma=0.05, drift=0.02, exits="in-order")
+
+
 def test_measured_lengths_are_told_only_where_there_are_some(tmp_path, run, run_json):
     walk, atlas = tmp_path / "walk.jsonl", tmp_path / "office.atlas"
     assert run("explore", "sample:office", "-o", walk)[0] == 0
@@ -273,6 +284,12 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     assert_refused(run("map", figure8, "-o", tmp_path / "x.atlas"), "an atlas already")
     assert_refused(run("map", tmp_path / "none.jsonl", "-o", tmp_path / "x.atlas"), "No such file")
     assert_refused(run("map", "sample:ring", "-o", tmp_path / "x.atlas", "--tolerance", "0.1"), "--tolerance is for walks")
+    for options, word in (
+        (("--noise", "5"), "60 degrees"),
+        (("--drift", "4"), "180 degrees"),
+        (("--tour", "wild"), "'covering', not 'wild'"),
+    ):
+        assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", *options), word)
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--step", "0"), "step")
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--start", "in9"), "did you mean")
     bad = tmp_path / "bad.jsonl"

@@ -2,6 +2,7 @@
 
 import math
 
+import networkx as nx
 import numpy as np
 import pytest
 
@@ -123,6 +124,132 @@ def test_noise_has_the_spread_asked_for():
     assert explore(world, seed=0, noise=0.05).walk.events[0].exits[0] != Heading(0.0)
 
 
+# Turned by an eighth, so that no heading is near the cut between -pi and pi.
+GRID = SimulatedWorld(
+    np.stack(np.divmod(np.arange(64), 8), axis=1) @ [[1, 1], [-1, 1]] * math.sqrt(50),
+    [(i, i + 8) for i in range(56)] + [(i, i + 1) for i in range(64) if i % 8 < 7],
+    edge_names=[f"w{k}" for k in range(112)],
+)
+
+
+def ways_of(walk):
+    return [event.edge for event in walk.events if isinstance(event, Visit)][1:]
+
+
+def test_noise_and_drift_are_declared_in_the_header():
+    world = SimulatedWorld(SQUARE, RING)
+    assert explore(world, seed=0, noise=0.03).walk.header == WalkHeader(sigma=0.03, drift=0.0)
+    assert explore(world, seed=0, noise=0.03, drift=0.01).walk.header == WalkHeader(sigma=0.03, drift=0.01)
+    assert explore(world, seed=0, drift=0.01, ordered_exits=True).walk.header == WalkHeader(drift=0.01, exits="in-order")
+    assert explore(world, seed=0, tours=2, tour="covering").walk.header == WalkHeader()
+
+
+def test_drift_is_common_to_the_readings_at_a_place_and_changes_evenly_between_places():
+    robot = explore(GRID, seed=3, drift=0.1, step=2.5)
+    events, bias = robot.walk.events, []
+    star = {v: np.sort(GRID.heading[GRID.darts_at(v)]) for v in range(64)}
+    for event in events[::2]:
+        off = np.array([heading.yaw for heading in event.exits]) - star[int(event.place)]
+        assert np.ptp(off) < 1e-12
+        bias.append(off[0])
+    for k, event in enumerate(events[1::2]):
+        dart = next(
+            2 * e + side
+            for e, ends in enumerate(GRID.edges.tolist())
+            for side in (0, 1)
+            if (str(ends[side]), str(ends[1 - side])) == (events[2 * k].place, events[2 * k + 2].place)
+        )
+        off = np.array(event.yaw) - GRID.heading[dart]
+        assert off == pytest.approx(np.linspace(bias[k], bias[k + 1], 5), abs=1e-12)
+
+
+def test_drift_has_the_spread_asked_for_and_is_half_forgotten_after_twenty_legs():
+    bias = []
+    for seed in range(30):
+        visits = explore(GRID, seed=seed, drift=0.05, step=100.0, start=9).walk.events[::2]
+        bias.append([np.mean([h.yaw for h in v.exits]) - np.mean(GRID.heading[GRID.darts_at(int(v.place))]) for v in visits])
+    length = min(map(len, bias))
+    bias = np.array([row[:length] for row in bias])
+    assert length > 150
+    assert bias.std() == pytest.approx(0.05, rel=0.15)
+    assert bias[:, 0].std() == pytest.approx(0.05, rel=0.4)  # from the first place on
+    assert (bias[:, :-1] * bias[:, 1:]).mean() / (bias**2).mean() == pytest.approx(0.966, abs=0.03)
+    assert (bias[:, :-20] * bias[:, 20:]).mean() / (bias**2).mean() == pytest.approx(0.5, abs=0.2)
+
+
+def test_noise_is_independent_from_reading_to_reading():
+    walk = explore(GRID, seed=1, noise=0.05, step=100.0, tours=20).walk
+    ends = np.array([event.yaw for event in walk.events if isinstance(event, Samples)])
+    assert ends.shape[1] == 2  # a leg of one long step has its two ends
+    off = (ends % (math.pi / 2)) - math.pi / 4
+    assert off.std() == pytest.approx(0.05, rel=0.05)
+    assert abs(np.corrcoef(off.T)[0, 1]) < 0.05
+    assert abs(np.corrcoef(off[:-1, 1], off[1:, 0])[0, 1]) < 0.05
+
+
+def test_a_covering_tour_goes_to_the_nearest_new_way():
+    graph = nx.MultiGraph(GRID.edges.tolist())
+    ends = dict(zip(GRID.edge_names, GRID.edges.tolist(), strict=True))
+    for seed in (None, 0, 1):
+        walk = explore(GRID, seed=seed, tour="covering", start=0).walk
+        places, walked, since = [int(place) for place in walk.places], set(), 0
+        for k, way in enumerate(ways_of(walk)):
+            if way not in walked:
+                near = nx.single_source_shortest_path_length(graph, places[since])
+                assert k - since == min(near[v] for name in ends.keys() - walked for v in ends[name])
+                walked.add(way)
+                since = k + 1
+        assert since == walk.n_legs  # it stops at the end of the last new way
+        assert walked == set(ends)
+        assert build(walk).n_edges == 112
+    assert len({explore(GRID, seed=s, tour="covering").walk.places for s in range(10)}) > 1
+    assert explore(GRID, tour="covering").walk == explore(GRID, tour="covering").walk
+
+
+@pytest.mark.parametrize("tour", ["depth-first", "covering"])
+def test_tours_follow_each_other_from_where_the_last_ended(tour):
+    options = {"seed": 7, "tour": tour}
+    one, three = explore(GRID, **options), explore(GRID, **options, tours=3)
+    assert three.walk.events[: len(one.walk.events)] == one.walk.events
+    ways = ways_of(three.walk)
+    first = len(ways_of(one.walk))
+    assert min(ways.count(name) for name in GRID.edge_names) >= 3
+    assert set(ways[:first]) == set(ways[first : 2 * first + 112]) == set(GRID.edge_names)
+    assert build(three.walk).n_faces == build(one.walk).n_faces
+    assert three.metres == pytest.approx(10 * len(ways))
+    alone = SimulatedWorld([(0, 0)], np.empty((0, 2), int))
+    assert explore(alone, tour=tour, tours=3).walk.events == (Visit("0", ()),)
+
+
+def test_loops_and_parallel_ways_are_covered_too():
+    loop, arc = [(0, 0), (0, 5), (-5, 5), (-5, 0), (0, 0)], [(0, 0), (5, 5), (10, 0)]
+    world = SimulatedWorld([(0, 0), (10, 0), (3, 1)], [(0, 0), (0, 1), (0, 1), (0, 2)], [loop, None, arc, None])
+    for seed in (None, *range(8)):
+        plane = build(explore(world, seed=seed, tour="covering", tours=2, start=1).walk)
+        assert (plane.n_vertices, plane.n_edges, plane.n_faces) == (3, 4, 3)
+
+
+def test_exits_are_in_the_order_of_their_headings_unless_their_true_order_is_asked_for():
+    def stars(walk):
+        return [(int(v.place), [h.yaw for h in v.exits]) for v in walk.events if isinstance(v, Visit) and v.exits]
+
+    noisy = {"seed": 2, "noise": 0.9, "drift": 0.5}
+    assert all(yaws == sorted(yaws) for _, yaws in stars(explore(GRID, **noisy).walk))
+    begins = set()
+    for noise in (0.0, 1e-9, 0.9):
+        walk = explore(GRID, seed=2, noise=noise, ordered_exits=True).walk
+        assert walk.header.exits == "in-order"
+        if noise < 0.1:  # near enough to tell which exit is which
+            for place, yaws in stars(walk):
+                true = GRID.heading[GRID.darts_at(place)]
+                order = [int(np.abs(np.angle(np.exp(1j * (true - yaw)))).argmin()) for yaw in yaws]
+                assert [(k - order[0]) % len(order) for k in order] == list(range(len(order)))
+                begins.add((len(order), order[0]))
+    assert {(4, k) for k in range(4)} <= begins  # they begin anywhere
+    true = explore(GRID, seed=2, ordered_exits=True, noise=0.9).walk
+    assert any(yaws != sorted(yaws) for _, yaws in stars(true))
+
+
 def test_exits_and_names_are_given_when_asked_for():
     world = SimulatedWorld(SQUARE, RING, vertex_names="abcd", edge_names="uvwx")
     walk = explore(world, exits=False).walk
@@ -152,6 +279,15 @@ def test_the_tolerance_suits_the_narrowest_fork():
         ({"step": 1e-9}, BadInput, "a step of 1e-09 m takes 4e.10 samples over 40 m of ways; take a longer step"),
         ({"noise": -1}, BadInput, "noise is a standard deviation"),
         ({"noise": math.inf}, BadInput, "noise is a standard deviation"),
+        ({"noise": 5}, BadInput, r"noise is .* 0 to 1.047 \(60 degrees\), such as 0.035 for 2 degrees, not 5"),
+        ({"noise": True}, BadInput, "noise is a standard deviation"),
+        ({"drift": -0.1}, BadInput, "drift is the standard deviation"),
+        ({"drift": 4}, BadInput, "drift is the standard deviation"),
+        ({"tour": "random"}, BadInput, "a tour is 'depth-first' or 'covering', not 'random'"),
+        ({"tours": 0}, BadInput, "tours is how often to walk every way, 1 or more, not 0"),
+        ({"tours": 1.5}, BadInput, "tours is how often"),
+        ({"tours": True}, BadInput, "tours is how often"),
+        ({"tours": 10**8}, BadInput, "a step of 1 m takes 4e.09 samples over 4e.09 m of ways"),
         ({"tolerance": 3}, BadInput, "a tolerance is an angle"),
     ],
 )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ninefold.mapping import PlaneMap
-    from ninefold.mapping.robot.simulated import SimulatedWorld
+    from ninefold.mapping.robot.simulated_world import SimulatedWorld
 
     from .projection import Projection
 
@@ -183,7 +183,7 @@ class Source(Immutable):
         BadInput
             If edges meet without a vertex.
         """
-        from ninefold.mapping.robot.simulated import SimulatedWorld
+        from ninefold.mapping.robot.simulated_world import SimulatedWorld
 
         self._refuse_crossings()
         return SimulatedWorld(

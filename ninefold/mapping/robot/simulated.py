@@ -1,163 +1,39 @@
 """A simulated robot in a world of plane geometry: it sees places, exits and its own yaw, and no coordinate.
 
-The robot explores depth-first. It takes an exit it has not taken; if that leads to a place it knows, it comes back the way
-it went; at a place without new exits it goes back along the edge that first led there.
+By default the robot explores depth-first. It takes an exit it has not taken; if that leads to a place it knows, it comes
+back the way it went; at a place without new exits it goes back along the edge that first led there. Its compass may err in
+two ways: each reading by itself (noise), and all readings at one place alike (drift), by a bias that changes slowly.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import ceil, pi
-from typing import TYPE_CHECKING
+from math import sqrt
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 
 from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
-from .. import geometry
-from ..heading import TAU, Heading
-from ..names import Names
-from .walk import DEFAULT_TOLERANCE, Event, Samples, Visit, Walk, WalkHeader
+from ..heading import Heading
+from . import _tours
+from .walk import DEFAULT_TOLERANCE, Event, Samples, Visit, Walk, WalkHeader, checked_drift, checked_sigma
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from numpy.typing import NDArray
 
-    from numpy.typing import ArrayLike, NDArray
+    from .simulated_world import SimulatedWorld
 
-__all__ = ["Exploration", "SimulatedWorld", "explore"]
+__all__ = ["DRIFT_KEPT", "Exploration", "Tour", "explore"]
+
+Tour: TypeAlias = Literal["depth-first", "covering"]
+
+DRIFT_KEPT = 0.966
+"""Share of the compass bias that is kept from one place to the next: half of it is left after 20 legs."""
 
 _MOST_SAMPLES = 1e8
-
-
-class SimulatedWorld:
-    """Places with coordinates and the ways between them. Ways do not cross; that is not checked.
-
-    Parameters
-    ----------
-    points
-        (V, 2) metres in a plane, x east and y north.
-    edges
-        (E, 2) integers, the rows of `points` a way joins; loops and parallel ways need `paths`.
-    paths
-        Per edge None for a straight way, or a (k, 2) polyline that includes both ends.
-    vertex_names, edge_names
-        Labels; row numbers for places if left out, and the robot then names no edge.
-
-    Attributes
-    ----------
-    heading
-        (2E,) float64 yaw on leaving along each dart, radians; dart 2e runs as edge e is given.
-    narrowest
-        The least angle between two ways at one place, radians.
-    metres
-        Length of all ways.
-
-    Raises
-    ------
-    BadInput
-        As `PlaneMap.from_geometry` does, crossings apart: two ways that leave a place in the same direction, for instance.
-
-    Examples
-    --------
-    >>> world = SimulatedWorld([(0, 0), (3, 0), (0, 4)], [(0, 1), (1, 2), (2, 0)], vertex_names="abc")
-    >>> explore(world).walk.places
-    ('a', 'b', 'c', 'a')
-    """
-
-    __slots__ = (
-        "_darts",
-        "_paths",
-        "_start",
-        "edge_names",
-        "edges",
-        "heading",
-        "metres",
-        "narrowest",
-        "points",
-        "vertex_names",
-    )
-
-    def __init__(
-        self,
-        points: ArrayLike,
-        edges: ArrayLike,
-        paths: Sequence[ArrayLike | None] | None = None,
-        *,
-        vertex_names: Iterable[str | int] | None = None,
-        edge_names: Iterable[str | int] | None = None,
-    ) -> None:
-        xy, ends = geometry.checked_points(points), geometry.checked_edges(edges)
-        n_vertices, n_edges = len(xy), len(ends)
-        if n_edges and (int(ends.min()) < 0 or int(ends.max()) >= n_vertices):
-            raise BadInput(f"edges must hold rows of points, 0 to {n_vertices - 1}; found {int(ends.max())}")
-        self.points, self.edges = xy, ends
-        self.vertex_names = Names("vertex", n_vertices, vertex_names)
-        self.edge_names = Names("edge", n_edges, edge_names)
-        heading, _, line, start = geometry.bearings(xy, ends, paths, self.edge_names)
-        self.heading: NDArray[np.float64] = heading
-        self._paths, self._start = line, start
-        tail = np.ascontiguousarray(ends.reshape(-1), dtype=np.int32)
-        following = geometry.rotation_by_heading(tail, heading, n_vertices, self.vertex_names, self.edge_names)
-        gaps = (heading[following] - heading) % TAU
-        gaps[following == np.arange(tail.size)] = TAU
-        self.narrowest = float(gaps.min()) if gaps.size else TAU
-        order = np.lexsort((heading, tail))
-        bounds = np.searchsorted(tail[order], np.arange(n_vertices + 1))
-        self._darts = (order, bounds)
-        self.metres = float(sum(np.hypot(*np.diff(self.path(e), axis=0).T).sum() for e in range(n_edges)))
-
-    def __repr__(self) -> str:
-        return f"SimulatedWorld({len(self.points)} places, {len(self.edges)} ways)"
-
-    def darts_at(self, vertex: int) -> list[int]:
-        """Return the darts that leave a vertex, counter-clockwise, ascending yaw; dart 2e runs as edge e is given."""
-        order, bounds = self._darts
-        return [int(d) for d in order[bounds[vertex] : bounds[vertex + 1]]]
-
-    def path(self, edge: int) -> NDArray[np.float64]:
-        """Return the polyline of an edge, (k, 2)."""
-        if self._paths is None:
-            return np.asarray(self.points[self.edges[edge]])
-        return self._paths[self._start[edge] : self._start[edge + 1]]
-
-    def sampled(self, dart: int, step: float) -> tuple[NDArray[np.float64], float]:
-        """Return the yaw of a robot that goes along a dart, (n,) radians not wrapped, and the metres it goes.
-
-        Sampled at the start, every `step` metres, at every bend and at the end. A robot that turns more than a quarter turn
-        on the spot is also sampled half-way through, so that noise cannot flip the sense in which it turned.
-        """
-        line = self.path(dart >> 1)
-        if dart & 1:
-            line = line[::-1]
-        pieces = np.diff(line, axis=0)
-        length = np.hypot(pieces[:, 0], pieces[:, 1])
-        yaw = np.arctan2(pieces[:, 1], pieces[:, 0])
-        if len(yaw) == 1:
-            return np.full(ceil(length[0] / step) + 1, yaw[0]), float(length[0])
-        bend = np.diff(yaw)
-        bend -= TAU * np.round(bend / TAU)
-        yaw = yaw[0] + np.concatenate([[0.0], np.cumsum(bend)])
-        reach = np.concatenate([[0.0], np.cumsum(length)])
-        # Multiples of step strictly inside each piece, and one sample where it begins.
-        inside = np.maximum(np.ceil(reach[1:] / step) - np.floor(reach[:-1] / step) - 1, 0).astype(np.int64)
-        samples = np.repeat(yaw, inside + 1)
-        sharp = np.flatnonzero(np.abs(bend) > pi / 2)
-        if sharp.size:
-            samples = np.insert(samples, np.cumsum(inside + 1)[sharp], yaw[sharp] + bend[sharp] / 2)
-        return np.append(samples, yaw[-1]), float(reach[-1])
-
-    def components(self) -> list[list[int]]:
-        """Return the vertices of each connected component, ascending, the component of the lowest vertex first."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        n = len(self.points)
-        links = coo_array((np.ones(len(self.edges), np.int8), (self.edges[:, 0], self.edges[:, 1])), shape=(n, n))
-        count, component = connected_components(links, directed=False)
-        order = np.argsort(component, kind="stable")
-        parts = np.split(order, np.cumsum(np.bincount(component, minlength=count))[:-1])
-        return sorted(part.tolist() for part in parts)
+_TOURS = {"depth-first": _tours.depth_first, "covering": _tours.covering}
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,17 +68,21 @@ def explore(
     exits: bool = True,
     metres: bool = False,
     tolerance: float | None = None,
+    drift: float = 0.0,
+    tour: Tour = "depth-first",
+    tours: int = 1,
+    ordered_exits: bool = False,
 ) -> Exploration:
-    """Walk a world depth-first until every place that can be reached is visited and every way there walked.
+    """Walk a world until every place that can be reached is visited and every way there walked.
 
     Parameters
     ----------
     start
         Name of the first place; left out, the first place of the component with the most ways.
     seed
-        Order in which exits are tried, and noise. None tries them counter-clockwise from the way back.
+        Order in which exits are tried, noise and drift. None tries them counter-clockwise from the way back.
     noise
-        Standard deviation of the yaw, radians, on samples and exits, each by itself.
+        Standard deviation of the yaw, radians, on samples and exits, each by itself; at most pi / 3 (60 degrees).
     step
         Metres between samples.
     exits
@@ -211,23 +91,37 @@ def explore(
         Whether the log tells the length of every leg, without error.
     tolerance
         For the header; left out, 0.02, or a third of the narrowest angle between two ways if that is less.
+    drift
+        Standard deviation, radians, of a bias that all readings at one visit have in common: the exits seen, the last sample
+        of the leg that led there, the first of the leg that leads on. At most pi. From place to place it keeps the share
+        `DRIFT_KEPT` and gains noise of its own, so that its spread stays the same; along a leg it changes evenly.
+    tour
+        ``"depth-first"``, or ``"covering"``: always to the nearest way not yet walked.
+    tours
+        How often every way is to be walked anew; each tour begins where the one before ended.
+    ordered_exits
+        List the exits in their true order, counter-clockwise and beginning anywhere, and let the header say so. Otherwise,
+        where headings err, they are in the order of the headings seen.
 
     Returns
     -------
     Exploration
-        The same arguments give the same walk.
+        The same arguments give the same walk, if there is a seed. Where there is noise or drift, the header of the walk
+        declares both.
 
     Raises
     ------
     BadInput, UnknownName
-        For a step or noise that is none, or an unknown start.
+        For a step, noise, drift or number of tours that is none, or an unknown start or tour.
 
     Notes
     -----
-    Every way is walked twice at most. Complexity O(samples + E log E), no recursion.
+    Depth-first, every way is walked twice at most in a tour. Complexity O(samples + E log E), no recursion; a covering tour
+    can take O(E^2), and on street networks does not.
 
     Examples
     --------
+    >>> from ninefold.mapping import SimulatedWorld
     >>> world = SimulatedWorld([(0, 0), (3, 0), (9, 9)], [(0, 1)])
     >>> robot = explore(world, step=1.0)
     >>> robot.unreached, robot.metres
@@ -237,11 +131,15 @@ def explore(
     """
     if not (isinstance(step, int | float) and 0 < step < float("inf")):
         raise BadInput(f"step is a positive number of metres, not {quoted(step)}")
-    if not (isinstance(noise, int | float) and 0 <= noise < float("inf")):
-        raise BadInput(f"noise is a standard deviation in radians, not {quoted(noise)}")
-    if (most := world.metres / step) > _MOST_SAMPLES:
+    sigma = _checked_noise(noise)
+    drift = checked_drift(drift)
+    if tour not in get_args(Tour):
+        raise BadInput(f"a tour is {' or '.join(map(repr, get_args(Tour)))}, not {quoted(tour)}")
+    if isinstance(tours, bool) or not isinstance(tours, int) or tours < 1:
+        raise BadInput(f"tours is how often to walk every way, 1 or more, not {quoted(tours)}")
+    if (most := tours * world.metres / step) > _MOST_SAMPLES:
         raise BadInput(
-            f"a step of {step:g} m takes {most:.2g} samples over {world.metres:.3g} m of ways; take a longer step"
+            f"a step of {step:g} m takes {most:.2g} samples over {tours * world.metres:.3g} m of ways; take a longer step"
         )
     parts = world.components()
     ways = np.bincount(world.edges[:, 0], minlength=len(world.points))
@@ -250,83 +148,103 @@ def explore(
     home = next(part for part in parts if first in part)
     if tolerance is None:
         tolerance = min(DEFAULT_TOLERANCE, world.narrowest / 3)
-    robot = _Robot(
-        world,
-        np.random.default_rng(seed),
-        shuffles=seed is not None,
-        noise=noise,
-        step=step,
-        exits=exits,
-        measures=metres,
-    )
-    robot.run(first, int(ways[home].sum()))
+    rng = np.random.default_rng(seed)
+    compass = _Compass(rng, sigma or 0.0, drift)
+    looks = _Looks(exits=exits, in_order=ordered_exits, metres=metres, step=step)
+    robot = _Robot(world, compass, looks, rng if seed is not None else None)
+    robot.run(first, int(ways[home].sum()), tour, tours)
     names = world.vertex_names
+    header = WalkHeader(
+        tolerance=tolerance,
+        sigma=sigma,
+        drift=drift if sigma is not None or drift else None,
+        exits="in-order" if ordered_exits else "any-order",
+    )
     return Exploration(
-        Walk(WalkHeader(tolerance=tolerance), tuple(robot.events)),
+        Walk(header, tuple(robot.events)),
         names[first],
         tuple(tuple(names[v] for v in part) for part in parts if part is not home),
         robot.metres,
     )
 
 
+def _checked_noise(noise: float) -> float | None:
+    """Return the sigma that a noise is declared as, None for no noise."""
+    if not isinstance(noise, bool) and isinstance(noise, int | float) and noise == 0:
+        return None
+    try:
+        return checked_sigma(noise)
+    except BadInput:
+        raise BadInput(
+            f"noise is a standard deviation in radians, 0 to 1.047 (60 degrees), such as 0.035 for 2 degrees, "
+            f"not {quoted(noise)}"
+        ) from None
+
+
+@dataclass(frozen=True, slots=True)
+class _Looks:
+    """What the robot notes: exits, whether in their true order, the metres of every leg; and metres between two samples."""
+
+    exits: bool
+    in_order: bool
+    metres: bool
+    step: float
+
+
+class _Compass:
+    """Errs: each reading by itself, and all readings at one place alike by a bias that drifts from place to place."""
+
+    def __init__(self, rng: np.random.Generator, noise: float, drift: float) -> None:
+        self.exact = not noise and not drift
+        self._rng, self._noise, self._drift = rng, noise, drift
+        self._bias = self._bias_before = rng.normal(0.0, drift) if drift else 0.0
+
+    def travel(self) -> None:
+        """Go on to another place, whose bias is a little different."""
+        if self._drift:
+            gained = self._rng.normal(0.0, self._drift * sqrt(1 - DRIFT_KEPT**2))
+            self._bias_before, self._bias = self._bias, DRIFT_KEPT * self._bias + gained
+
+    def along(self, yaw: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Read yaws sampled on the way from the place before to this one."""
+        if self._drift:
+            yaw = yaw + np.linspace(self._bias_before, self._bias, yaw.size)
+        return self._scattered(yaw)
+
+    def here(self, yaw: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Read yaws at this place."""
+        return self._scattered(yaw + self._bias if self._drift else yaw)
+
+    def _scattered(self, yaw: NDArray[np.float64]) -> NDArray[np.float64]:
+        return yaw + self._rng.normal(0.0, self._noise, yaw.size) if self._noise else yaw
+
+
 class _Robot:
     """Writes the log while it walks."""
 
-    def __init__(
-        self,
-        world: SimulatedWorld,
-        rng: np.random.Generator,
-        *,
-        shuffles: bool,
-        noise: float,
-        step: float,
-        exits: bool,
-        measures: bool,
-    ) -> None:
-        self.world, self.rng, self.shuffles, self.noise, self.step, self.exits = world, rng, shuffles, noise, step, exits
-        self.measures = measures
+    def __init__(self, world: SimulatedWorld, compass: _Compass, looks: _Looks, rng: np.random.Generator | None) -> None:
+        self.world, self.compass, self.looks, self.rng = world, compass, looks, rng
         self.ends = world.edges.reshape(-1).tolist()
         self.events: list[Event] = []
         self.metres = 0.0
         self._legs: dict[int, tuple[Samples, float]] = {}
         self._stars: dict[int, tuple[Heading, ...]] = {}
 
-    def run(self, start: int, ways: int) -> None:
-        """Explore from a vertex until as many ways as its component has are walked."""
-        walked = bytearray(len(self.world.edges))
-        untried = {start: self._choices(start, -1)}
-        self._visit(start, None)
-        trail = [(start, -1)]
-        while ways:
-            at, came = trail[-1]
-            choices = untried[at]
-            while choices and walked[choices[-1] >> 1]:
-                choices.pop()
-            if not choices:
-                trail.pop()
-                self._go(came ^ 1)
-                continue
-            dart = choices.pop()
-            walked[dart >> 1] = True
-            ways -= 1
-            self._go(dart)
-            there = self.ends[dart ^ 1]
-            if there not in untried:
-                untried[there] = self._choices(there, dart ^ 1)
-                trail.append((there, dart))
-            elif there != at and ways:
-                self._go(dart ^ 1)
-
-    def _choices(self, vertex: int, back: int) -> list[int]:
-        """Darts to try from a vertex, the first last."""
-        darts = self.world.darts_at(vertex)
-        if self.shuffles:
-            self.rng.shuffle(darts)
-            return darts
-        at = darts.index(back) + 1 if back >= 0 else 0
-        return (darts[at:] + darts[:at])[::-1]
+    def run(self, start: int, ways: int, tour: Tour, tours: int) -> None:
+        """Explore from a vertex whose component has so many ways, tour after tour."""
+        at = start
+        for number in range(tours):
+            darts = _TOURS[tour](self.world, at, ways, self.rng)
+            dart = next(darts, None)  # what the robot will do first is settled before it looks round
+            if not number:
+                self._visit(at, None)
+            while dart is not None:
+                self._go(dart)
+                at = self.ends[dart ^ 1]
+                dart = next(darts, None)
 
     def _go(self, dart: int) -> None:
+        self.compass.travel()
         samples, metres = self._samples(dart)
         self.metres += metres
         self.events.append(samples)
@@ -335,26 +253,29 @@ class _Robot:
     def _samples(self, dart: int) -> tuple[Samples, float]:
         known = self._legs.get(dart)
         if known is None:
-            yaw, metres = self.world.sampled(dart, self.step)
-            if self.noise:
-                yaw = yaw + self.rng.normal(0.0, self.noise, yaw.size)
-            known = Samples(tuple(yaw.tolist()), metres=metres if self.measures else None), metres
-            if not self.noise:
+            yaw, metres = self.world.sampled(dart, self.looks.step)
+            read = self.compass.along(yaw)
+            known = Samples(tuple(read.tolist()), metres=metres if self.looks.metres else None), metres
+            if self.compass.exact:
                 self._legs[dart] = known
         return known
 
     def _visit(self, vertex: int, edge: int | None) -> None:
         names = self.world.edge_names
         name = None if edge is None or names.are_rows else names[edge]
-        self.events.append(Visit(self.world.vertex_names[vertex], self._exits(vertex) if self.exits else None, name))
+        exits = self._exits(vertex) if self.looks.exits else None
+        self.events.append(Visit(self.world.vertex_names[vertex], exits, name))
 
     def _exits(self, vertex: int) -> tuple[Heading, ...]:
         known = self._stars.get(vertex)
         if known is None:
-            yaw = self.world.heading[self.world.darts_at(vertex)]
-            if self.noise:
-                yaw = yaw + self.rng.normal(0.0, self.noise, yaw.size)
+            yaw = self.compass.here(self.world.heading[self.world.darts_at(vertex)])
             known = tuple(map(Heading, yaw.tolist()))
-            if not self.noise:
+            if self.compass.exact:
                 self._stars[vertex] = known
+            elif not self.looks.in_order:
+                known = tuple(sorted(known, key=lambda heading: heading.yaw))
+        if self.looks.in_order and self.rng is not None and known:
+            first = int(self.rng.integers(len(known)))
+            known = known[first:] + known[:first]
         return known
