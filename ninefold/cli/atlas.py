@@ -10,6 +10,7 @@ from ninefold._wording import counted
 
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
 from ._output import note, notes, print_json, progress
+from .follow import follow_walk, read_whole_walk
 
 if TYPE_CHECKING:
     from ninefold.io import Atlas
@@ -34,42 +35,76 @@ def map_source(
         typer.Option(help="For a walk: headings that differ by less, in radians, count as one. Left out, the log says."),
     ] = None,
     drop_crossing: DropCrossing = False,
+    follow: Annotated[
+        bool,
+        typer.Option("--follow", help="For a walk on standard input: keep the atlas current with every line that comes."),
+    ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="With --follow: go on with the walk of an atlas that is there already.")
+    ] = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
-    """Build a map from a walk log, or from lines with geometry whose coordinates are then dropped, and keep it."""
+    """Build a map from a walk log, or from lines with geometry whose coordinates are then dropped, and keep it.
+
+    SOURCE - is a walk on standard input.
+    """
     from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
     from ninefold.io.formats import recognise
 
-    kind = recognise(source).name
+    _check_following(source, out, follow=follow, resume=resume, force=force)
+    kind = "walk" if source == "-" else recognise(source).name
     if kind == "atlas":
         raise BadInput(f"{source}: an atlas already; `ninefold info` shows what is in it")
     if kind == "walk" and drop_crossing:
         raise BadInput("--drop-crossing is for sources with geometry, and a walk has none")
     if kind != "walk" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
-    refuse_existing(out, force=force)
-    if out.exists() and not source.startswith("sample:") and out.samefile(source):
+    if not resume:
+        refuse_existing(out, force=force)
+    if out.exists() and source != "-" and not source.startswith("sample:") and out.samefile(source):
         raise BadInput(f"{out}: the source itself, which the atlas would replace; give -o another name")
-    with progress(f"mapping {source}"):
-        if kind == "walk":
-            atlas, doubts = _from_walk(source, out, tolerance, force=force)
-        else:
-            atlas, doubts = _from_source(source, out, drop_crossing=drop_crossing, force=force), []
+    doubts: list[str] = []
+    if follow:
+        atlas, doubts = follow_walk(out, tolerance, resume=resume, force=force)
+    elif source == "-":
+        atlas, doubts = read_whole_walk(out, tolerance, force=force)
+    else:
+        with progress(f"mapping {source}"):
+            if kind == "walk":
+                atlas, doubts = _from_walk(source, out, tolerance, force=force)
+            else:
+                atlas = _from_source(source, out, drop_crossing=drop_crossing, force=force)
     with atlas:
-        plane, warnings = atlas.plane, (*doubts, *atlas.warnings)
+        plane, warnings, n_events = atlas.plane, (*doubts, *atlas.warnings), atlas.n_events
     if kind == "walk" and plane.heading is not None and plane.n_edges <= TESTED_UP_TO:
         from ninefold.layout import rigidity
 
         with progress("holding the headings against each other"):
             warnings = (*warnings, *rigidity(plane).warnings)
     if as_json:
-        print_json({"file": str(out), **_counts(plane), "warnings": list(warnings)})
+        followed = {"events": n_events} if follow else {}
+        print_json({"file": str(out), **_counts(plane), **followed, "warnings": list(warnings)})
     else:
         notes(warnings)
         print(f"{out}: {_described(plane)}")
     return 0
+
+
+def _check_following(source: str, out: Path, *, follow: bool, resume: bool, force: bool) -> None:
+    from ninefold.errors import BadInput
+
+    if follow and source != "-":
+        raise BadInput("--follow takes a walk from standard input: `ninefold map - --follow -o ATLAS`")
+    if resume and not follow:
+        raise BadInput(
+            "--resume is for `ninefold map - --follow`, whose walk goes on; a finished walk makes its map at once"
+        )
+    if resume and force:
+        raise BadInput("--resume goes on with the atlas that is there and --force replaces it; give one of them")
+    if follow and out.is_file() and not (resume or force):
+        raise BadInput(f"{out}: exists already; --resume goes on with its walk, --force replaces it")
 
 
 def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:

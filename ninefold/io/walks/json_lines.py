@@ -223,6 +223,11 @@ class WalkReader:
             raise WalkError("the file is empty; a walk begins with a header line", where=self.name)
         return self._header
 
+    def go_on(self, *, on_leg: bool) -> None:
+        """Read what comes next as the rest of a walk that has been at a place, and has left it if `on_leg`."""
+        self._visits = max(1, self._visits)
+        self._samples = int(on_leg)
+
     def take(self, line: bytes) -> Event | None:
         """Read one line: an event, or None for the header and for a blank line.
 

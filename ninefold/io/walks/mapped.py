@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from ninefold.mapping.robot.mapper import build
 from .json_lines import read_walk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from os import PathLike
 
     from ninefold.mapping import PlaneMap
@@ -38,14 +39,22 @@ def map_of_walk(path: str | PathLike[str], *, tolerance: float | None = None) ->
 
 
 @contextmanager
-def by_line(path: str | PathLike[str]) -> Iterator[None]:
-    """Let errors about an event of the walk in a file name the file and the line instead of the event."""
+def by_line(path: str | PathLike[str], *, content: bytes | None = None) -> Iterator[None]:
+    """Let errors about an event of a walk name the file and the line instead of the event.
+
+    Parameters
+    ----------
+    path
+        The file, or the name of a stream.
+    content
+        What came from the stream, which cannot be read again.
+    """
     try:
         yield
     except BadInput as error:
         if error.event is None:
             raise
-        line = line_of_event(path, error.event)
+        line = line_of_event(path, error.event) if content is None else _line_in(BytesIO(content), error.event)
         raise located(error, f"{path}, line {line}" if line else f"{path}, event {error.event}") from None
 
 
@@ -54,13 +63,17 @@ def line_of_event(path: str | PathLike[str], event: int) -> int | None:
 
     The file is read once more, so that no walk has to keep the line of every event for the sake of an error.
     """
-    left = event + 1  # the header is the first line that is not blank
     try:
         with Path(path).open("rb") as file:
-            for number, line in enumerate(file, 1):
-                left -= bool(line.strip())
-                if not left:
-                    return number
+            return _line_in(file, event)
     except OSError:
-        pass
+        return None
+
+
+def _line_in(lines: Iterable[bytes], event: int) -> int | None:
+    left = event + 1  # the header is the first line that is not blank
+    for number, line in enumerate(lines, 1):
+        left -= bool(line.strip())
+        if not left:
+            return number
     return None
