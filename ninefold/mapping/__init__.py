@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .doubt.doubts import Again, Doubt
+    from .doubt.estimate import Estimate, estimate
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -34,9 +36,12 @@ if TYPE_CHECKING:
     from .sets import Line, Point, Region, Set
 
 __all__ = [
+    "Again",
     "Closure",
     "Dart",
+    "Doubt",
     "Edge",
+    "Estimate",
     "Event",
     "Exploration",
     "Face",
@@ -58,6 +63,7 @@ __all__ = [
     "build",
     "circular_mean",
     "cut_vertices",
+    "estimate",
     "explore",
     "shortest_path",
     "unwrap",
@@ -67,6 +73,8 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.doubts": ("Again", "Doubt"),
+        "doubt.estimate": ("Estimate", "estimate"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

@@ -43,12 +43,16 @@ class Leg(NamedTuple):
         Net rotation on the way, counter-clockwise positive, whole turns included.
     metres
         Length of the way, or None unless all of it was measured.
+    sharpest
+        Largest rotation between two successive samples, radians in [0, pi): how near the reading of `turn` came to being
+        wrong by a whole one.
     """
 
     out: float
     back: float
     turn: float
     metres: float | None = None
+    sharpest: float = 0.0
 
 
 class LegReader:
@@ -74,13 +78,14 @@ class LegReader:
     beginning may: it was taken at the place left, before any metre.
     """
 
-    __slots__ = ("_first", "_last", "_measured", "_metres", "_turn", "_unit")
+    __slots__ = ("_first", "_last", "_measured", "_metres", "_sharpest", "_turn", "_unit")
 
     def __init__(self, unit: Unit = DEGREES) -> None:
         self._unit = unit
         self._first: float | None = None
         self._last = 0.0
         self._turn = 0.0
+        self._sharpest = 0.0
         self._metres = 0.0
         self._measured: bool | None = None  # whether all of the way so far; None at the place left
 
@@ -97,11 +102,11 @@ class LegReader:
         WalkError
             If two successive samples differ by half a turn; the leg is then as it was.
         """
-        first, last, turn = self._first, self._last, self._turn
+        first, last, turn, sharpest = self._first, self._last, self._turn, self._sharpest
         begins = first is None
         if first is None:
             first = last = yaws[0]
-            turn = 0.0
+            turn = sharpest = 0.0
         for yaw in yaws:
             change = remainder(yaw - last, TAU)
             if not -_HALF_TURN < change < _HALF_TURN:
@@ -111,8 +116,10 @@ class LegReader:
                     "them is unknown; sample more often"
                 )
             turn += change
+            if change > sharpest or -change > sharpest:
+                sharpest = abs(change)
             last = yaw
-        self._first, self._last, self._turn = first, last, turn
+        self._first, self._last, self._turn, self._sharpest = first, last, turn, sharpest
         if begins:
             self._metres, self._measured = 0.0, None
         if metres is None:
@@ -132,7 +139,8 @@ class LegReader:
         """
         if self._first is None:
             raise WalkError("no heading; a leg has at least one sample")
-        leg = Leg(wrap(self._first), wrap(self._last + pi), self._turn, self._metres if self._measured else None)
+        metres = self._metres if self._measured else None
+        leg = Leg(wrap(self._first), wrap(self._last + pi), self._turn, metres, self._sharpest)
         if abs(whole_turns(leg.out, leg.back, leg.turn)[1]) > 1e-6:
             raise WalkError("the headings are numbers so large that their differences mean nothing; give radians")
         if leg.metres is not None and not 0 < leg.metres < inf:
@@ -154,7 +162,7 @@ class LegReader:
     def fork(self) -> LegReader:
         """Return a reader that goes on from here on its own."""
         other = LegReader(self._unit)
-        other._first, other._last, other._turn = self._first, self._last, self._turn
+        other._first, other._last, other._turn, other._sharpest = self._first, self._last, self._turn, self._sharpest
         other._metres, other._measured = self._metres, self._measured
         return other
 

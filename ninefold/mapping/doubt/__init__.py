@@ -1,0 +1,26 @@
+"""The robust half of mapping: maps from headings that err, with every doubt named.
+
+=============  ==================================================================================================
+`noise`        what a compass is declared to err by, and the thresholds that keep the promise
+`evidence`     the walk as arrays: visits, legs, lists of exits
+`exit_lists`   lists of exits laid over each other; how the frame stood at every visit
+`ways`         which legs went the same way, and the readings that leaves open
+`orders`       the orders of the ways around one place that legs and lists leave open
+`legality`     whether a part of a map is plane and turns as it must
+`settling`     what genus and turning leave of all that, searched exactly in independent groups
+`whole_turns`  which face is the outer one, where whole turns are not certain
+`reading`      one reading of the walk, settled, and its maps
+`outcome`      from the evidence to all readings
+`doubts`       what is left open, in words, and which walk would settle it
+`estimate`     `estimate` and `Estimate`: the maps that are left, or what is in doubt
+=============  ==================================================================================================
+
+**The promise.** Errors independent, zero-mean, Gaussian, standard deviation at most sigma; places and exit counts right; the
+true map is among those returned except with probability at most (alternatives examined) x 1e-9; one map is called certain
+only if it is the only one left; else the undecided places, their remaining orders, pairs that may be one or two ways, and
+the number of maps are named; no map left means more noise than declared.
+
+Every step keeps what it cannot exclude at those odds: an order that noise could have turned round, a bundle of legs that may
+be two ways, a whole turn that was sampled too coarsely. What falls falls by genus and turning, which pass from a map to its
+parts and so never exclude the truth. The public names are those of `ninefold.mapping`.
+"""
