@@ -8,6 +8,8 @@ counter-clockwise and a face lies on the left of its darts.
 whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
+**Its health** is how well headings and turns agree, edge by edge: `health`.
+
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
 and `Face` are types for the numbers that index the arrays of a map.
 
@@ -22,6 +24,7 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .closing import Health, health
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -41,6 +44,7 @@ __all__ = [
     "Exploration",
     "Face",
     "Heading",
+    "Health",
     "Line",
     "Mapper",
     "Names",
@@ -59,6 +63,7 @@ __all__ = [
     "circular_mean",
     "cut_vertices",
     "explore",
+    "health",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -67,6 +72,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "closing": ("Health", "health"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),
