@@ -8,6 +8,8 @@ counter-clockwise and a face lies on the left of its darts.
 whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
+**Where it is.** A `Localizer` tells where on a map a robot can be that was switched on somewhere, from noisy headings.
+
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
 and `Face` are types for the numbers that index the arrays of a map.
 
@@ -22,6 +24,7 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .doubt.localizer import Candidate, Localizer, Move
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
     from .sets import Line, Point, Region, Set
 
 __all__ = [
+    "Candidate",
     "Closure",
     "Dart",
     "Edge",
@@ -41,7 +45,9 @@ __all__ = [
     "Face",
     "Heading",
     "Line",
+    "Localizer",
     "Mapper",
+    "Move",
     "Names",
     "PlaneMap",
     "Point",
@@ -66,6 +72,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

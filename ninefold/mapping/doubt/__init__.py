@@ -1,0 +1,10 @@
+"""Where a robot can be: an exact belief over the places of a map, from noisy headings.
+
+=============  ==================================================================================================
+`localizer`    `Localizer`: what is seen and walked, one thing after another, narrows where the robot can be
+`following`    `follow`: a localizer taken along a whole walk, event by event
+=============  ==================================================================================================
+
+`Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can
+be those of a place. The public names are those of `ninefold.mapping`.
+"""
