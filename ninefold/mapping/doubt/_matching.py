@@ -36,7 +36,7 @@ __all__ = ["GATE", "Look", "Noise", "weights"]
 GATE = 6.0
 """Standard deviations beyond which an error counts as impossible: once in 500 million headings."""
 
-DIRECT_UP_TO = 5
+DIRECT_UP_TO = 6
 """Exits up to which every assignment is looked at by itself when there is no compass."""
 
 _MOST_SETS = 20_000
@@ -121,7 +121,10 @@ def weights(
     if look.exits is None or not k:
         return _two_headings(yaw, back, look, left, noise)
     integrated = _each_assignment if k <= DIRECT_UP_TO else _over_offsets
-    return integrated(yaw, look.exits, back, look, left, noise)
+    at_once = max(1, _MOST_NUMBERS // (len(_orders(k, None)) if k <= DIRECT_UP_TO else 1))
+    parts = [slice(i, i + at_once) for i in range(0, n, at_once)]
+    found = [integrated(yaw[s], look.exits, None if back is None else back[s], look, left, noise) for s in parts]
+    return found[0] if len(found) == 1 else np.concatenate(found)
 
 
 def _fits(k: int, look: Look, noise: Noise) -> bool:
@@ -169,11 +172,11 @@ def _assignments(
     n, k = yaw.shape
     m = exits.size
     log = _log_density(exits[:, None, None] - yaw.T, noise.sigma)  # exit, dart, place
-    if pin is not None:
-        log[pin[0]] = np.where(np.arange(k)[:, None] == pin[1], log[pin[0]], _LOWEST)
     if noise.extra:  # a dart that is none: an exit there has any direction
         odds = noise.extra / (1 - noise.extra) * noise.sigma / TAU**0.5
         log = np.concatenate([log, np.full((m, 1, n), np.log(odds))], axis=1)
+    if pin is not None:
+        log[pin[0]] = np.where(np.arange(log.shape[1])[:, None] == pin[1], log[pin[0]], _LOWEST)
     if not m:
         return np.full(n, k * np.log(noise.missed) if k else 0.0)
     best = log.max(axis=1)
@@ -311,9 +314,8 @@ class _Spread:
     def log_weight(self, sigma: float) -> Floats:
         """Return the log weight of the errors once the reference is integrated over."""
         mean = self.total / self.count
-        far = np.maximum(self.high - mean, mean - self.low)
         weight = (self.total * mean - self.squares) / (2 * sigma * sigma)
-        return np.where(far <= GATE * sigma, weight, _LOWEST)
+        return np.where(self.high - self.low <= 2 * GATE * sigma, weight, _LOWEST)
 
 
 def _over_offsets(

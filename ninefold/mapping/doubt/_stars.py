@@ -37,6 +37,7 @@ class Stars:
         self._darts = exits[np.lexsort((self.heading[exits], self.tail[exits]))]
         self._first = np.cumsum(self.degree) - self.degree
         self.rank = np.zeros(self.tail.size, np.int64)
+        self._looks: dict[tuple[float, bool], NDArray[np.int64]] = {}
         self.rank[self._darts] = np.arange(exits.size) - self._first[self.tail[self._darts]]
 
     def darts(self, places: NDArray[np.int64], k: int) -> NDArray[np.int64]:
@@ -52,8 +53,17 @@ class Stars:
             Radians; headings are told apart by the cell of this size that they fall in.
         compass
             Whether headings are seen from east; otherwise from the way back.
+
+        Notes
+        -----
+        Complexity O(E degree + E log E) at the first call with these arguments; the answer is kept.
         """
-        look = np.zeros((self.tail.size, 2), np.int64)
+        if (cell, compass) not in self._looks:
+            self._looks[cell, compass] = self._sorted_looks(cell, compass=compass)
+        return self._looks[cell, compass]
+
+    def _sorted_looks(self, cell: float, *, compass: bool) -> NDArray[np.int64]:
+        look = np.zeros(self.tail.size, np.int64)
         for k in np.unique(self.degree[self.degree > 0]).tolist():
             darts = self.darts(np.flatnonzero(self.degree == k), k)
             yaw = self.heading[darts]
@@ -63,5 +73,5 @@ class Stars:
                 code = np.full(len(cells), k, np.int64)
                 for i in range(k):
                     code = code * 1_000_003 + cells[:, i]  # wraps around; two looks with one code only blur a forecast
-                look[darts[:, back], 0] = code
-        return np.unique(look[:, 0], return_inverse=True)[1].astype(np.int64).ravel()
+                look[darts[:, back]] = code
+        return np.asarray(np.unique(look, return_inverse=True)[1], np.int64)

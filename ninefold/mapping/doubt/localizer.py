@@ -8,6 +8,7 @@ which the exits seen can be those of a place are added up, and a move by an exit
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from math import exp, isfinite, log, pi
 from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
@@ -178,7 +179,6 @@ class Localizer:
         self._before = self._log  # log weights before what was seen here, which a move needs
         self._look = Look()
         self._given: tuple[int, ...] = ()  # where each exit of the list, as given, is in the look
-        self._looks: NDArray[np.int64] | None = None
         self._observations = self._moves = 0
 
     # -- what is seen and done -----------------------------------------------------------------------------------------
@@ -227,8 +227,9 @@ class Localizer:
             Position in the list of exits that was observed last, or the heading on leaving, measured by itself from where
             those exits were, or what `best_move` returned.
         turn
-            Net rotation on the way, radians counter-clockwise, if measured. With a compass it is the difference of two
-            headings, so only whole turns are told apart by it; without, it weighs as an angle between two headings.
+            Net rotation on the way, radians counter-clockwise, if measured: the difference of two headings. With a compass
+            those are weighed already, so it only rules out ways that turn otherwise by half a turn, or by more than errors
+            explain. Without, it weighs by itself.
 
         Raises
         ------
@@ -258,6 +259,10 @@ class Localizer:
         self._before = self._log = _normal(np.log(likely[states]))
         self._look, self._given = Look(), ()
         return self
+
+    def fork(self) -> Localizer:
+        """Return a localizer that goes on from here on its own; what was worked out about the map is shared."""
+        return copy(self)
 
     # -- where it can be -----------------------------------------------------------------------------------------------
 
@@ -324,7 +329,7 @@ class Localizer:
         DifferentMaps
             For a set of another map.
         """
-        return float(min(1.0, self.probabilities @ places_in(self.plane, item, closed=closed)))
+        return float(self.probabilities[places_in(self.plane, item, closed=closed)].sum())
 
     # -- where to go ---------------------------------------------------------------------------------------------------
 
@@ -356,9 +361,7 @@ class Localizer:
         seen = look.exits
         if seen is None or not k:
             raise BadInput("no exits were observed here, so there is none to choose; observe(exits=...) first")
-        if self._looks is None:
-            cell = max(3 * self._noise.sigma, TAU / 72)
-            self._looks = self._stars.looks(cell, compass=self.compass)
+        looks = self._stars.looks(max(3 * self._noise.sigma, TAU / 72), compass=self.compass)
         rows = self._most(CERTAIN)
         rows = rows[self._stars.degree[self._places(self._states[rows])] == k]
         if not rows.size:  # an exit was missed or made up wherever the robot can be
@@ -373,7 +376,7 @@ class Localizer:
             arrived = darts[np.arange(rows.size), (at + shift) % k] ^ 1
             likely = np.bincount(arrived, weights=share, minlength=self._n_darts)
             there = np.flatnonzero(likely)
-            group = self._looks[there]
+            group = looks[there]
             size, weight = np.bincount(group), np.bincount(group, weights=likely[there])
             moves.append(Move(i, Heading(float(seen[at])), float(np.dot(size, weight))))
         return tuple(sorted(moves, key=lambda move: round(move.left, 9)))
@@ -437,10 +440,10 @@ class Localizer:
 
     def _turned(self, turn: float) -> NDArray[np.float64]:
         """Return the log weight of each dart to have been arrived by, for a net rotation on the way."""
-        size = np.abs(turn - self._along) / (self._noise.sigma * 2**0.5)
-        with np.errstate(invalid="ignore"):
-            possible = size <= GATE * 2**0.5
-        return np.where(possible, 0.0 if self.compass else -0.5 * size * size, -np.inf)
+        error, sigma = np.abs(turn - self._along), self._noise.sigma
+        if self.compass:
+            return np.where(error <= min(2 * GATE * sigma, pi), 0.0, -np.inf)
+        return np.where(error <= 2 * GATE * sigma, -0.25 * (error / sigma) ** 2, -np.inf)
 
     def _most(self, mass: float) -> NDArray[np.int64]:
         """Return the rows of the fewest states that together are so likely, the likeliest first."""
