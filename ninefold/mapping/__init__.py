@@ -8,7 +8,8 @@ counter-clockwise and a face lies on the left of its darts.
 whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
-**Where it is.** A `Localizer` tells where on a map a robot can be that was switched on somewhere, from noisy headings.
+**Where it is.** A `Localizer` tells where on a map a robot can be that was switched on somewhere, from noisy headings;
+`locate` takes one along a walk, a `Follower` event by event.
 
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
 and `Face` are types for the numbers that index the arrays of a map.
@@ -24,6 +25,7 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .doubt.following import Follower, locate
     from .doubt.localizer import Candidate, Localizer, Move
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
@@ -43,6 +45,7 @@ __all__ = [
     "Event",
     "Exploration",
     "Face",
+    "Follower",
     "Heading",
     "Line",
     "Localizer",
@@ -64,6 +67,7 @@ __all__ = [
     "circular_mean",
     "cut_vertices",
     "explore",
+    "locate",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -72,6 +76,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.following": ("Follower", "locate"),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),

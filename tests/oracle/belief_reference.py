@@ -1,4 +1,4 @@
-"""Where a robot can be, slowly: every place, every way back, every assignment of exits to darts, every offset of the compass.
+"""Where a robot can be, slowly: every place, every way back, every assignment of exits to darts, every offset.
 
 Nothing is clever here. Densities are normalised, and without a compass an integral over all offsets is a plain sum.
 """

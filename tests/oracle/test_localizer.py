@@ -4,7 +4,6 @@ from math import radians
 
 import numpy as np
 import pytest
-from tests.oracle.belief_reference import Belief
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import KINDS, world
@@ -12,6 +11,7 @@ from worlds import KINDS, world
 from ninefold.mapping import Heading, Localizer
 from ninefold.mapping.doubt import _matching
 from ninefold.mapping.doubt._matching import Look, Noise, weights
+from tests.oracle.belief_reference import Belief
 
 MOST_EXITS = 4
 
@@ -91,9 +91,10 @@ def test_every_step_agrees_with_enumeration(seed, kind, size, degrees, compass, 
             dart = ways[int(rng.integers(len(ways)))]
             by = int(np.flatnonzero(order == ways.index(dart))[0])
         else:
-            dart = [d for d in plane.darts_at(truth.at) if not plane.tether[d >> 1]][0]
+            dart = next(d for d in plane.darts_at(truth.at) if not plane.tether[d >> 1])
             by = truth.sensed(dart)
-        turn = truth.go(dart) + truth.error() if rng.random() < 0.4 else (truth.go(dart), None)[1]
+        turned = truth.go(dart) + truth.error()
+        turn = turned if rng.random() < 0.4 else None
         robot.move(Heading(by) if isinstance(by, float) else by, turn=turn)
         belief.move(by, turn)
         held_equal(robot, belief)

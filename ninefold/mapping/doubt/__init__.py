@@ -2,7 +2,7 @@
 
 =============  ==================================================================================================
 `localizer`    `Localizer`: what is seen and walked, one thing after another, narrows where the robot can be
-`following`    `follow`: a localizer taken along a whole walk, event by event
+`following`    `locate`, `Follower`: a localizer taken along a walk, event by event
 =============  ==================================================================================================
 
 `Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can

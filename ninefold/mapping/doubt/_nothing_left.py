@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,88 +16,86 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..plane import PlaneMap
+    from ..robot.units import Unit
     from ._matching import Look
     from ._stars import Stars
 
-__all__ = ["empty_belief"]
+__all__ = ["Before", "empty_belief"]
+
+
+class Before(NamedTuple):
+    """Where the robot could be before, by place, each once; and the observations and moves made until then."""
+
+    places: NDArray[np.int64]
+    observations: int
+    moves: int
 
 
 def empty_belief(
-    plane: PlaneMap,
-    stars: Stars,
-    places: NDArray[np.int64],
-    look: Look,
-    what: str,
-    done: tuple[int, int],
-    sigma: float,
-    *,
-    compass: bool,
+    plane: PlaneMap, stars: Stars, before: Before, look: Look, what: str, noise: str, unit: Unit, *, compass: bool
 ) -> EmptyBelief:
     """Return the error for a belief that became empty.
 
     Parameters
     ----------
-    places
-        Those that were possible before.
+    look
+        What was seen.
     what
-        What was seen, in words for where `look` says nothing.
-    done
-        Observations and moves made before.
+        The same in words, for where `look` says nothing.
+    noise
+        The noise model in words.
     """
-    observations, moves = done
-    seen = what
+    seen = []
     if look.exits is not None:
-        seen = counted(look.exits.size, "exit") + (f" at {_degrees(look.exits)} deg" if look.exits.size else "")
-        if look.back is not None:
-            seen += f" and the way back at {degrees(look.back):.0f} deg"
-    elif look.back is not None:
-        seen = f"a way at {degrees(look.back):.0f} deg"
-    nearest, text = _nearest(plane, stars, places, look, compass=compass)
-    frame = "" if compass else " without a compass"
+        headings = f" at {unit.sense}{unit.headings(look.exits)} {unit.measure}" if look.exits.size else ""
+        seen.append(counted(look.exits.size, "exit") + headings)
+    if look.back is not None:
+        seen.append(f"{what} at {unit.heading(look.back)}")
+    nearest, how_near = _nearest(plane, stars, before.places, look, unit, compass=compass)
+    done = f"{counted(before.observations, 'look')} and {counted(before.moves, 'move')}"
     return EmptyBelief(
-        f"no place fits what was seen after {counted(observations, 'look')} and {counted(moves, 'move')}: {seen}; {text}; "
-        f"the map must be wrong, or the noise model (sigma {degrees(sigma):.3g} degrees{frame})",
-        observation=observations + 1,
-        moves=moves,
+        f"after {done} no place is left: none of the {counted(before.places.size, 'place')} possible before fits "
+        f"{' with '.join(seen) or what}; {how_near}; either the map is wrong or the noise model is ({noise})",
+        observation=before.observations + 1,
+        moves=before.moves,
         nearest=nearest,
     )
 
 
-def _nearest(plane: PlaneMap, stars: Stars, places: NDArray[np.int64], look: Look, *, compass: bool) -> tuple[str, str]:
+def _nearest(
+    plane: PlaneMap, stars: Stars, places: NDArray[np.int64], look: Look, unit: Unit, *, compass: bool
+) -> tuple[str | None, str]:
     """Return the place that comes nearest, and in words how near."""
-    possible = f"of {counted(places.size, 'place')} possible before"
     degree = stars.degree[places]
     if look.exits is not None and look.exits.size:
         k = look.exits.size
-        alike = places[degree == k]
-        if not alike.size:
+        if not (degree == k).any():
             v = int(places[np.abs(degree - k).argmin()])
             name = plane.vertex_names[v]
-            return name, f"none {possible} has so many, {quoted(name)} has {counted(int(stars.degree[v]), 'exit')}"
-        yaw = stars.heading[stars.darts(alike, k)]
-        shift = likeliest_shift(yaw, look.exits, compass=compass)
-        error = look.exits - np.take_along_axis(yaw, (np.arange(k) + shift[:, None]) % k, axis=1)
-        if not compass:
-            error -= error[:, :1]
-        error -= TAU * np.round(error / TAU)
-        if not compass:
-            error -= error.mean(axis=1, keepdims=True)
-    else:
-        alike = places[degree > 0]
-        if look.back is None or not alike.size:
-            name = plane.vertex_names[int(places[0])]
-            return name, f"{counted(places.size, 'place')} were possible before, {quoted(name)} among them"
-        darts = np.concatenate(
-            [stars.darts(alike[stars.degree[alike] == d], d).ravel() for d in np.unique(degree[degree > 0])]
-        )
+            return name, f"none has so many, {quoted(name)} has {counted(int(stars.degree[v]), 'exit')}"
+        alike = places[degree == k]
+        error = _least_errors(stars.heading[stars.darts(alike, k)], look.exits, compass=compass)
+    elif look.back is not None and compass and (degree > 0).any():
+        ways = [stars.darts(places[degree == k], k).ravel() for k in np.unique(degree[degree > 0]).tolist()]
+        darts = np.concatenate(ways)
+        alike = stars.tail[darts]
         error = look.back - stars.heading[darts]
-        error -= TAU * np.round(error / TAU)
-        alike, error = stars.tail[darts], error[:, None]
+        error = (error - TAU * np.round(error / TAU))[:, None]
+    else:
+        name = plane.vertex_names[int(places[0])]
+        return name, f"{quoted(name)} was among them"
     worst = np.abs(error).max(axis=1)
     at = int(worst.argmin())
-    name, off = plane.vertex_names[int(alike[at])], degrees(float(worst[at]))
-    return name, f"nearest {possible} comes {quoted(name)}, off by {off:.0f} degrees"
+    name = plane.vertex_names[int(alike[at])]
+    return name, f"nearest comes {quoted(name)}, its headings off by {unit.angle(float(worst[at]))}"
 
 
-def _degrees(yaw: NDArray[np.float64]) -> str:
-    return ", ".join(f"{degrees(x):.0f}" for x in yaw.tolist())
+def _least_errors(yaw: NDArray[np.float64], exits: NDArray[np.float64], *, compass: bool) -> NDArray[np.float64]:
+    """Return the errors of each exit seen against those of each place, (n, k), in the likeliest order."""
+    k = exits.size
+    shift = likeliest_shift(yaw, exits, compass=compass)
+    error = exits - np.take_along_axis(yaw, (np.arange(k) + shift[:, None]) % k, axis=1)
+    if not compass:
+        error -= error[:, :1]
+    error -= TAU * np.round(error / TAU)
+    return error if compass else error - error.mean(axis=1, keepdims=True)

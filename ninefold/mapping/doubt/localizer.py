@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from copy import copy
-from math import exp, isfinite, log, pi
+from math import degrees, exp, isfinite, log, pi
 from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,8 +20,9 @@ from ninefold.errors import BadInput
 
 from ..heading import TAU, Heading
 from ..numbering import Dart
+from ..robot.units import unit_of
 from ._matching import GATE, Look, Noise, weights
-from ._nothing_left import empty_belief
+from ._nothing_left import Before, empty_belief
 from ._outlook import likeliest_shift
 from ._stars import Stars
 from ._within import places_in
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..plane import PlaneMap
+    from ..robot.walk import HeadingUnit
     from ..sets import Set
 
 __all__ = ["LARGEST_SIGMA", "Candidate", "Localizer", "Move", "checked_sigma"]
@@ -116,6 +118,8 @@ class Localizer:
         How likely any one exit is not in the list of exits.
     extra
         How likely a list has one exit too many, in any direction.
+    unit
+        In which messages speak of headings, as in the header of a walk.
 
     Raises
     ------
@@ -157,6 +161,7 @@ class Localizer:
         start: Set | None = None,
         missed: float = 0.0,
         extra: float = 0.0,
+        unit: HeadingUnit = "yaw-deg",
     ) -> None:
         if plane.heading is None or plane.turn is None:
             raise BadInput(
@@ -170,6 +175,7 @@ class Localizer:
         if not self.compass and (missed or extra):
             raise BadInput("without a compass the list of exits has to be whole: missed and extra are for compass=True")
         self._noise = Noise(checked_sigma(sigma), float(missed), float(extra))
+        self._unit = unit_of(unit)
         self._stars = Stars(plane, plane.heading)
         self._along = np.repeat(plane.turn, 2) * np.tile([-1.0, 1.0], plane.turn.size)  # net rotation towards a dart's tail
         self._n_darts = plane.tail.size  # state d < 2E is dart d, 2E + v is place v with the way back unknown
@@ -211,7 +217,7 @@ class Localizer:
             yaw, back = self._yaw(states[rows], k)
             found[rows] = weights(yaw, back, look, self._noise, compass=self.compass)
         after = before + found
-        self._require(after, look, "what was seen")
+        self._require(after, look, "the way back")
         self._observations += 1
         kept = after > after.max() + _FORGOTTEN
         self._states, self._before, self._log = states[kept], before[kept], _normal(after[kept])
@@ -251,7 +257,7 @@ class Localizer:
         darts, share = np.concatenate(arriving), np.concatenate(shares)
         if rotation is not None:
             share += self._turned(rotation)[darts]
-        self._require(share, Look(back=leaving[0]), "the turn on the way")
+        self._require(share, Look(back=leaving[0]), "a way" if rotation is None else "a way that turns so")
         likely = np.bincount(darts, weights=np.exp(share - share.max()), minlength=self._n_darts)
         states = np.flatnonzero(likely > exp(_FORGOTTEN) * likely.max())
         self._moves += 1
@@ -457,9 +463,9 @@ class Localizer:
         """Raise `EmptyBelief` if nothing is left."""
         if after.size and after.max() > -np.inf:
             return
-        places = np.unique(self._places(self._states))
-        done = self._observations, self._moves
-        raise empty_belief(self.plane, self._stars, places, look, what, done, self._noise.sigma, compass=self.compass)
+        before = Before(np.unique(self._places(self._states)), self._observations, self._moves)
+        noise = f"sigma {degrees(self._noise.sigma):.3g} degrees{'' if self.compass else ', without a compass'}"
+        raise empty_belief(self.plane, self._stars, before, look, what, noise, self._unit, compass=self.compass)
 
 
 def _read(exits: Iterable[Heading] | None, came_by: Heading | int | None) -> tuple[Look, tuple[int, ...]]:
