@@ -203,6 +203,8 @@ class EmptyBelief(NinefoldError, ValueError):
         Name of the place, of those possible before, that comes nearest to what was seen; None where there is none.
     event
         The number of the event of a walk that showed it, counted from 1, or None.
+    reason
+        The message without that number before it.
     """
 
     def __init__(self, message: str, *, observation: int, moves: int, nearest: str | None) -> None:
@@ -211,11 +213,12 @@ class EmptyBelief(NinefoldError, ValueError):
         self.moves = moves
         self.nearest = nearest
         self.event: int | None = None
+        self.reason = message
 
     def at_event(self, number: int) -> EmptyBelief:
         """Return the same error with the number of the event of a walk, counted from 1, before its message."""
         found = EmptyBelief(f"event {number}: {self}", observation=self.observation, moves=self.moves, nearest=self.nearest)
-        found.event = number
+        found.event, found.reason = number, self.reason
         return found
 
 

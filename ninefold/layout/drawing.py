@@ -208,6 +208,7 @@ class Drawing(Immutable):
         theme: str = "auto",
         width: int = 800,
         rigidity: bool | Rigidity = False,
+        belief: ArrayLike | None = None,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -227,16 +228,28 @@ class Drawing(Immutable):
         rigidity
             Colour the edges by what the headings fix: parts whose shape is measured, lengths that are only evened out, and
             legs that the rest contradicts. True works it out; what `ninefold.layout.rigidity` returned saves that.
+        belief
+            (V,) how likely a robot is at each place, such as ``Localizer.probabilities``: the likely places are marked, and
+            the likeliest named.
 
         Raises
         ------
         BadInput, DifferentMaps
-            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
-            `rigidity` for a map without headings.
+            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map,
+            `rigidity` for a map without headings, or a belief that is none.
         """
         from .svg import render
 
-        return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width, rigidity=rigidity)
+        return render(
+            self,
+            highlight=highlight,
+            title=title,
+            labels=labels,
+            theme=theme,
+            width=width,
+            rigidity=rigidity,
+            belief=belief,
+        )
 
     def save(self, path: str | Path, **options: Any) -> None:
         """Write the drawing as an SVG file, whole or not at all; a file that is there is replaced. Options as for `to_svg`.

@@ -8,6 +8,8 @@ What the headings of a map fix has colours of its own, `FIXED`, so that sets can
 parts and one for all others, `EVENED` for legs that nothing measures, and `CONTRADICTED`, a red, for those that the rest
 contradicts. They too stay apart for readers with any of the common deficiencies; the tests hold it by simulation.
 
+Where a robot can be has the four colours of `BELIEF`, from the likeliest places on.
+
 References
 ----------
 M. Okabe and K. Ito, Color Universal Design, 2008.
@@ -15,7 +17,7 @@ M. Okabe and K. Ito, Color Universal Design, 2008.
 
 from __future__ import annotations
 
-__all__ = ["CONTRADICTED", "DARK", "EVENED", "FIXED", "LIGHT", "ROLES", "THEMES", "style_sheet"]
+__all__ = ["BELIEF", "CONTRADICTED", "DARK", "EVENED", "FIXED", "LIGHT", "ROLES", "THEMES", "style_sheet"]
 
 THEMES = ("auto", "light", "dark")
 
@@ -26,11 +28,13 @@ FIXED = {"light": ("#1450C4", "#2E9E63", "#7A1E6A", "#CA8411"), "dark": ("#5498F
 EVENED = {"light": "#8C9199", "dark": "#7C848E"}
 CONTRADICTED = {"light": "#B5150F", "dark": "#F2603A"}
 
+BELIEF = {"light": ("#A3123F", "#DD5A22", "#E9A23B", "#B8AE8C"), "dark": ("#FF5A86", "#FF8B47", "#F6C453", "#8F8A74")}
+
 LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E2227", "faint": "#6B6F76"}
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str | None) -> str:
+def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str | None, belief: str | None) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -47,20 +51,24 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str |
     if legs is not None:
         rules += [f".fixed{k}{{stroke:{colour}}}" for k, colour in enumerate(FIXED[legs])]
         rules += [f".evened{{stroke:{EVENED[legs]}}}", f".contradicted{{stroke:{CONTRADICTED[legs]}}}"]
+    if belief is not None:
+        rules += [f".spot{{stroke:{base['paper']}}}"]
+        rules += [f".belief{k}{{fill:{colour}}}" for k, colour in enumerate(BELIEF[belief])]
     return "".join(f"{scope} {rule}" for rule in rules)
 
 
-def style_sheet(theme: str, used: int, *, legs: bool = False) -> str:
+def style_sheet(theme: str, used: int, *, legs: bool = False, belief: bool = False) -> str:
     """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
 
     With `legs` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``, ``contradicted``.
+    With `belief` there are those for where a robot can be: ``spot``, and ``belief0`` to ``belief3``.
 
     The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
     the whole page.
     """
     scope = f".ninefold-{theme}"
-    light = _rules(scope, LIGHT, ROLES[:used], "light" if legs else None)
-    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], "dark" if legs else None)
+    light = _rules(scope, LIGHT, ROLES[:used], "light" if legs else None, "light" if belief else None)
+    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], "dark" if legs else None, "dark" if belief else None)
     match theme:
         case "light":
             return light

@@ -278,6 +278,11 @@ class Localizer:
         return self._moves
 
     @property
+    def n_exits(self) -> int:
+        """How many exits were listed where the robot is now; 0 where they were not looked for."""
+        return len(self._given)
+
+    @property
     def probabilities(self) -> NDArray[np.float64]:
         """(V,) float64, how likely the robot is at each place of the map; they add up to 1."""
         at = np.bincount(self._places(self._states), weights=np.exp(self._log), minlength=self.plane.n_vertices)
