@@ -1,6 +1,7 @@
 """``ninefold locate``: where a robot can be whose walk began nobody knows where."""
 
 import sys
+from contextlib import contextmanager
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ninefold.errors import EmptyBelief
+    from ninefold.io.walks.json_lines import WalkReader
     from ninefold.mapping import Candidate, Event, Localizer, PlaneMap, Set, WalkHeader
     from ninefold.mapping.robot.units import Unit
 
@@ -77,18 +79,19 @@ def locate(
         plane = found.plane
         sets = {text: found.parse(text) for text in inside or []}
         began = None if start is None else found.parse(start)
-    header, events = _opened(walk)
+    log = _opened(walk)
+    header = log.header
     follower = Follower(plane, header, sigma=None if sigma is None else radians(sigma), start=began)
     answer = _Answer(str(atlas), plane, sets, unit_of("yaw-deg" if header.heading == "yaw-rad" else header.heading), top)
     told = False
     try:
-        with progress(f"following {'the walk' if walk == '-' else walk}"):
-            for event in events:
+        with progress(f"following {log.name}"), log.naming_lines():
+            for event in log.events:
                 if follower.step(event) and follow:
                     answer.tell_briefly(follower.localizer, as_json=as_json)
                     told = True
     except EmptyBelief as nowhere:
-        _tell_nowhere(walk, nowhere, as_json=as_json)
+        _tell_nowhere(log, nowhere, as_json=as_json)
         if out is not None:
             note(f"{out}: not written, since there is no place left to draw")
         return 1
@@ -109,27 +112,54 @@ def locate(
     return 0
 
 
-def _opened(walk: str) -> tuple["WalkHeader", "Iterator[Event]"]:
-    """Return the header of a walk and its events as they come; errors about an event name the line."""
+class _Log(NamedTuple):
+    """A walk that is being read."""
+
+    name: str
+    header: "WalkHeader"
+    events: "Iterator[Event]"
+    reader: "WalkReader | None"
+
+    def line(self, event: int | None) -> int | None:
+        """Return the line of an event: on standard input of the last, since it cannot be read again."""
+        from ninefold.io.walks.mapped import line_of_event
+
+        if self.reader is not None:
+            return self.reader.line
+        return None if event is None else line_of_event(self.name, event)
+
+    @contextmanager
+    def naming_lines(self) -> "Iterator[None]":
+        """Let errors about an event name its line."""
+        from ninefold.errors import BadInput, located
+
+        try:
+            yield
+        except BadInput as error:
+            if error.event is None:
+                raise
+            raise located(error, f"{self.name}, line {self.line(error.event)}") from None
+
+
+def _opened(walk: str) -> _Log:
+    """Read the header of a walk, and its events as they come."""
     from ninefold.io.walks.json_lines import WalkReader, iter_events, read_header
 
     if walk != "-":
-        return read_header(walk), iter_events(walk, tolerance=_AS_CLOSE_AS_THEY_LIKE)
+        return _Log(walk, read_header(walk), iter_events(walk, tolerance=_AS_CLOSE_AS_THEY_LIKE), None)
     reader = WalkReader("standard input", tolerance=_AS_CLOSE_AS_THEY_LIKE)
     lines = iter(sys.stdin.buffer.readline, b"")
     for line in lines:
         reader.take(line)
         if reader.started:
             break
-    return reader.header, (event for event in map(reader.take, lines) if event is not None)
+    events = (event for event in map(reader.take, lines) if event is not None)
+    return _Log(reader.name, reader.header, events, reader)
 
 
-def _tell_nowhere(walk: str, nowhere: "EmptyBelief", *, as_json: bool) -> None:
+def _tell_nowhere(log: _Log, nowhere: "EmptyBelief", *, as_json: bool) -> None:
     """Say that no place is left, and where in the walk."""
-    from ninefold.io.walks.mapped import line_of_event
-
-    line = None if walk == "-" or nowhere.event is None else line_of_event(walk, nowhere.event)
-    where = f"{walk}, line {line}" if line else f"event {nowhere.event}"
+    where = f"{log.name}, line {log.line(nowhere.event)}"
     reason = one_line(f"{where}: {nowhere.reason}")
     if as_json:
         print_json({"candidates": [], "certain": False, "moves": nowhere.moves, "reason": reason})

@@ -446,7 +446,9 @@ class Localizer:
         if not self._given:
             raise BadInput("no exits were observed here, so none can be told by its position; give the Heading on leaving")
         if not 0 <= at < len(self._given):
-            raise BadInput(f"{counted(len(self._given), 'exit')} were observed, from 0 on; there is none at position {at}")
+            raise BadInput(
+                f"the list observed has {counted(len(self._given), 'exit')}, from 0 on; there is none at position {at}"
+            )
         return None, self._given[int(at)]
 
     def _turned(self, turn: float) -> NDArray[np.float64]:
