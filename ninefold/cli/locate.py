@@ -226,7 +226,8 @@ class _Answer(NamedTuple):
         if not robot.certain and robot.n_exits:
             best = robot.best_move()
             heading = self.unit.heading(best.heading.yaw)
-            print(f"best move: the exit at {heading}; about {best.left:.3g} candidates are left then")
+            left = f"{best.left:.3g} of {counted(len(candidates), 'candidate')}"
+            print(f"best move: the exit at {heading}, which leaves {left} in expectation")
         if out is not None:
             print(f"{out}: a picture of it")
 

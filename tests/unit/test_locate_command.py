@@ -75,7 +75,7 @@ def test_the_best_move_is_told_in_the_unit_of_the_log(yard, capsys):
     found = json.loads(answer(capsys, walk, "--json"))
     assert sorted(one["vertex"] for one in found["candidates"]) == ["a", "c", "d"]
     assert found["best_move"]["heading"] == pytest.approx((30, 120)[found["best_move"]["exit"]])
-    assert "best move: the exit at bearing 30 deg; about" in answer(capsys, walk)
+    assert "best move: the exit at bearing 30 deg, which leaves 1.67 of 3 candidates in expectation" in answer(capsys, walk)
 
 
 def test_nowhere_is_an_answer(yard, capsys):

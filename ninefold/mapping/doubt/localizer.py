@@ -255,9 +255,11 @@ class Localizer:
             arriving.append(self._stars.darts(self._places(self._states[rows]), k).ravel() ^ 1)
             shares.append((found + self._before[rows][:, None]).ravel())
         darts, share = np.concatenate(arriving), np.concatenate(shares)
+        taken = Look(back=leaving[0])
+        self._require(share, taken, "a way")
         if rotation is not None:
             share += self._turned(rotation)[darts]
-        self._require(share, Look(back=leaving[0]), "a way" if rotation is None else "a way that turns so")
+            self._require(share, taken, f"a way that turns by {self._unit.angle(rotation)}")
         likely = np.bincount(darts, weights=np.exp(share - share.max()), minlength=self._n_darts)
         states = np.flatnonzero(likely > exp(_FORGOTTEN) * likely.max())
         self._moves += 1
