@@ -188,6 +188,8 @@ def test_exits_may_be_missed_or_made_up(yard):
         Localizer(yard, sigma=0.05).observe([WEST, EAST])
     robot = Localizer(yard, sigma=0.05, missed=0.05).observe([WEST, EAST])
     assert robot.likeliest.vertex == "1"
+    assert robot.best_move().left == pytest.approx(1)
+    assert robot.move(robot.best_move()).likeliest.vertex == "0"
     with pytest.raises(EmptyBelief):
         Localizer(yard, sigma=0.05).observe([WEST, SOUTH, Heading(1.0)])
     robot = Localizer(yard, sigma=0.05, extra=0.05).observe([WEST, SOUTH, Heading(1.0)])

@@ -13,7 +13,27 @@ if TYPE_CHECKING:
 
     from ._matching import Look
 
-__all__ = ["likeliest_shift"]
+__all__ = ["likeliest_exits", "likeliest_shift"]
+
+
+def likeliest_exits(
+    yaw: NDArray[np.float64],
+    exits: NDArray[np.float64],
+    back: NDArray[np.int64] | None,
+    look: Look,
+    *,
+    compass: bool,
+) -> NDArray[np.int64]:
+    """Return which exit of each place each exit seen is, (n, m): the likeliest, or where some were missed the nearest.
+
+    Parameters are those of `likeliest_shift`, but that a place may have more or fewer exits than were seen.
+    """
+    k = yaw.shape[1]
+    if exits.size == k:
+        shift = likeliest_shift(yaw, exits, back, look, compass=compass)
+        return np.asarray((np.arange(k) + shift[:, None]) % k)
+    error = exits[None, :, None] - yaw[:, None, :]
+    return np.asarray(np.abs(error - TAU * np.round(error / TAU)).argmin(axis=2))
 
 
 def likeliest_shift(

@@ -23,7 +23,7 @@ from ..numbering import Dart
 from ..robot.units import unit_of
 from ._matching import GATE, Look, Noise, weights
 from ._nothing_left import Before, empty_belief
-from ._outlook import likeliest_shift
+from ._outlook import likeliest_exits
 from ._stars import Stars
 from ._within import places_in
 
@@ -131,7 +131,9 @@ class Localizer:
     -----
     Errors are taken to be independent and Gaussian; one beyond 6 standard deviations counts as impossible. What is known of
     where the robot is, is exact under that model: which exit of a list is which dart is never decided, but added up over
-    all possibilities. An error leaves the localizer as it was.
+    all possibilities. Only what has become less likely than 1e-40 is dropped. A map's error at a place is the same at every
+    visit, so where it is not small, many looks at one place tell less than they are taken to. An error leaves the localizer
+    as it was.
 
     Complexity: the first look is O(V), later ones O(places still possible); exits of one place are matched in
     O(degree 2^degree) at worst.
@@ -376,29 +378,30 @@ class Localizer:
             raise BadInput("no exits were observed here, so there is none to choose; observe(exits=...) first")
         looks = self._stars.looks(max(3 * self._noise.sigma, TAU / 72), compass=self.compass)
         rows = self._most(CERTAIN)
-        rows = rows[self._stars.degree[self._places(self._states[rows])] == k]
-        if not rows.size:  # an exit was missed or made up wherever the robot can be
-            return tuple(Move(i, Heading(float(seen[at])), 0.0) for i, at in enumerate(self._given))
-        yaw, back = self._yaw(self._states[rows], k)
-        darts = self._stars.darts(self._places(self._states[rows]), k)
-        shift = likeliest_shift(yaw, seen, back, look, compass=self.compass)
-        share = np.exp(self._log[rows])
-        share /= share.sum()
+        states, share = self._states[rows], np.exp(self._log[rows])
+        arrived = np.full((rows.size, k), -1)
+        for degree, some in self._by_degree(states):
+            if degree:
+                yaw, back = self._yaw(states[some], degree)
+                way = likeliest_exits(yaw, seen, back, look, compass=self.compass)
+                darts = self._stars.darts(self._places(states[some]), degree)
+                arrived[some] = np.take_along_axis(darts, way, axis=1) ^ 1
         moves = []
         for i, at in enumerate(self._given):
-            arrived = darts[np.arange(rows.size), (at + shift) % k] ^ 1
-            likely = np.bincount(arrived, weights=share, minlength=self._n_darts)
+            to = arrived[:, at]
+            likely = np.bincount(to[to >= 0], weights=share[to >= 0], minlength=self._n_darts)
             there = np.flatnonzero(likely)
             group = looks[there]
             size, weight = np.bincount(group), np.bincount(group, weights=likely[there])
-            moves.append(Move(i, Heading(float(seen[at])), float(np.dot(size, weight))))
+            left = float(np.dot(size, weight)) / max(float(weight.sum()), 1e-300)
+            moves.append(Move(i, Heading(float(seen[at])), left))
         return tuple(sorted(moves, key=lambda move: round(move.left, 9)))
 
     def __repr__(self) -> str:
         if self.certain:
             where = f"at {self.likeliest.vertex}"
         else:
-            where = counted(int((self.probabilities > 0).sum()), "place")
+            where = counted(np.unique(self._places(self._states[self._most(CERTAIN)])).size, "place")
         return f"Localizer({where}, {counted(self._moves, 'move')})"
 
     # -- inside --------------------------------------------------------------------------------------------------------
