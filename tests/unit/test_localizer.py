@@ -238,6 +238,30 @@ def test_the_best_move_leads_to_where_places_differ():
 
 
 @pytest.mark.parametrize("compass", [True, False])
+def test_where_no_move_tells_apart_the_robot_heads_for_where_places_differ(compass):
+    """Two corridors alike but for a stub at the far east end: going back and forth in the west would never tell."""
+    corridor = [(x, x + 1) for x in range(6)]
+    points = [(x, y) for y in (0, 9) for x in range(7)] + [(6, 1)]
+    plane = PlaneMap.from_geometry(points, [*corridor, *((a + 7, b + 7) for a, b in corridor), (6, 14)])
+    robot = Localizer(plane, sigma=radians(3), compass=compass, start=plane.line(["0", "6"]))
+    robot.observe([EAST]).move(0)
+    for x in range(1, 6):
+        robot.observe([WEST, EAST], came_by=0)
+        assert names(robot) == sorted([str(x), str(x + 7)])
+        assert robot.forecast()[0].exit == (1 if x == 5 else 0)  # one move ahead both are alike, until the last
+        assert robot.best_move().exit == 1
+        robot.move(robot.best_move())
+    assert robot.observe([WEST, NORTH], came_by=0).likeliest.vertex == "6"
+
+
+def test_where_nothing_ever_tells_apart_the_first_exit_is_taken():
+    plane = PlaneMap.from_geometry([(0, 0), (1, 0), (0, 5), (1, 5)], [(0, 1), (2, 3)])
+    robot = Localizer(plane, sigma=radians(3)).observe([EAST])
+    assert robot.best_move().left == pytest.approx(2)
+    assert robot.move(robot.best_move()).observe([WEST]).best_move().left == pytest.approx(2)
+
+
+@pytest.mark.parametrize("compass", [True, False])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_forecast_counts_what_is_left_in_expectation(seed, compass):
     rng = np.random.default_rng(seed)

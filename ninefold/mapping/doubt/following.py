@@ -2,43 +2,23 @@
 
 from __future__ import annotations
 
-from math import radians
 from typing import TYPE_CHECKING
 
-from ninefold.errors import BadInput, EmptyBelief, WalkError, located
+from ninefold.errors import EmptyBelief, WalkError, located
 
 from ..heading import Heading
 from ..robot.legs import LegReader
 from ..robot.units import unit_of
 from ..robot.walk import Visit, WalkHeader
-from .localizer import Localizer, checked_sigma
+from .localizer import Localizer
+from .noise import sigma_of
 
 if TYPE_CHECKING:
     from ..plane import PlaneMap
     from ..robot.walk import Event, Walk
     from ..sets import Set
 
-__all__ = ["DEFAULT_SIGMA", "Follower", "locate", "sigma_of"]
-
-DEFAULT_SIGMA = radians(5)
-"""Standard deviation of a heading where neither the caller nor the walk declares one."""
-
-
-def sigma_of(header: WalkHeader) -> float:
-    """Return the standard deviation of a heading that a walk declares, radians, or `DEFAULT_SIGMA`.
-
-    Raises
-    ------
-    BadInput
-        If what it declares is none.
-    """
-    declared = header.extra.get("sigma")
-    if declared is None:
-        return DEFAULT_SIGMA
-    try:
-        return checked_sigma(declared)
-    except BadInput as error:
-        raise BadInput(f'the header\'s "sigma": {error}') from None
+__all__ = ["Follower", "locate"]
 
 
 def locate(plane: PlaneMap, walk: Walk, *, sigma: float | None = None, start: Set | None = None) -> Localizer:

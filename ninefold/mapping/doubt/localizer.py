@@ -7,9 +7,8 @@ which the exits seen can be those of a place are added up, and a move by an exit
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from copy import copy
-from math import degrees, exp, isfinite, log, pi
+from math import degrees, exp, log, pi
 from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,14 +20,17 @@ from ninefold.errors import BadInput
 from ..heading import TAU, Heading
 from ..numbering import Dart
 from ..robot.units import unit_of
+from ._ahead import Outlook, expected_left, towards_a_difference
 from ._matching import GATE, Look, Noise, weights
 from ._nothing_left import Before, empty_belief
 from ._outlook import likeliest_exits
+from ._readings import finite, look_of, probability
 from ._stars import Stars
 from ._within import places_in
+from .noise import checked_sigma
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -36,10 +38,7 @@ if TYPE_CHECKING:
     from ..robot.walk import HeadingUnit
     from ..sets import Set
 
-__all__ = ["LARGEST_SIGMA", "Candidate", "Localizer", "Move", "checked_sigma"]
-
-LARGEST_SIGMA = pi / 3
-"""Radians; a heading that errs by more tells next to nothing."""
+__all__ = ["Candidate", "Localizer", "Move"]
 
 CERTAIN = 0.999
 """Probability from which a place counts as certain."""
@@ -82,22 +81,6 @@ class Move(NamedTuple):
     exit: int
     heading: Heading
     left: float
-
-
-def checked_sigma(value: float) -> float:
-    """Return a standard deviation of headings in radians, or say why it is none.
-
-    Raises
-    ------
-    BadInput
-        Unless 0 < value <= pi / 3.
-    """
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= LARGEST_SIGMA:
-        raise BadInput(
-            "sigma is the standard deviation of a heading in radians, above 0 and at most pi/3 (60 degrees), such as "
-            f"math.radians(5), not {quoted(value)}"
-        )
-    return float(value)
 
 
 class Localizer:
@@ -171,12 +154,9 @@ class Localizer:
             )
         self.plane = plane
         self.compass = bool(compass)
-        for name, value in (("missed", missed), ("extra", extra)):
-            if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 1:
-                raise BadInput(f"{name} is a probability from 0 to below 1, not {quoted(value)}")
         if not self.compass and (missed or extra):
             raise BadInput("without a compass the list of exits has to be whole: missed and extra are for compass=True")
-        self._noise = Noise(checked_sigma(sigma), float(missed), float(extra))
+        self._noise = Noise(checked_sigma(sigma), probability("missed", missed), probability("extra", extra))
         self._unit = unit_of(unit)
         self._stars = Stars(plane, plane.heading)
         self._along = np.repeat(plane.turn, 2) * np.tile([-1.0, 1.0], plane.turn.size)  # net rotation towards a dart's tail
@@ -210,7 +190,7 @@ class Localizer:
         EmptyBelief
             If no place that is possible fits what was seen.
         """
-        look, given = _read(exits, came_by)
+        look, given = look_of(exits, came_by)
         states, before = self._states, self._log
         if look.tells_the_way_back:
             states, before = self._by_way_back(states, before)
@@ -247,7 +227,7 @@ class Localizer:
             If no exit of a possible place fits the heading or the turn.
         """
         leaving = self._leaving(by)
-        rotation = None if turn is None else _finite("a turn", turn)
+        rotation = None if turn is None else finite("a turn", turn)
         arriving, shares = [np.zeros(0, np.int64)], [np.zeros(0)]
         for k, rows in self._by_degree(self._states):
             if not k:
@@ -349,8 +329,17 @@ class Localizer:
     # -- where to go ---------------------------------------------------------------------------------------------------
 
     def best_move(self) -> Move:
-        """Return the exit that leaves fewest candidates in expectation; of equals the first. See `forecast`."""
-        return self.forecast()[0]
+        """Return the exit that leaves fewest candidates in expectation; of equals the first. See `forecast`.
+
+        Where no exit is expected to tell any two candidates apart, it is the first of a shortest way to where they differ,
+        if one is found with little search.
+        """
+        outlook = self._outlook()
+        forecast = self._forecast(outlook)
+        if forecast[0].left < outlook.share.size - 1e-9:
+            return forecast[0]
+        first = towards_a_difference(self._stars, outlook, compass=self.compass)
+        return next((move for move in forecast if self._given[move.exit] == first), forecast[0])
 
     def forecast(self) -> tuple[Move, ...]:
         """Return all exits observed last, that first which leaves fewest candidates in expectation.
@@ -372,30 +361,7 @@ class Localizer:
         -----
         Complexity O(E + candidates x degree) once the looks of all darts were sorted, at the first call.
         """
-        look, k = self._look, len(self._given)
-        seen = look.exits
-        if seen is None or not k:
-            raise BadInput("no exits were observed here, so there is none to choose; observe(exits=...) first")
-        looks = self._stars.looks(max(3 * self._noise.sigma, TAU / 72), compass=self.compass)
-        rows = self._most(CERTAIN)
-        states, share = self._states[rows], np.exp(self._log[rows])
-        arrived = np.full((rows.size, k), -1)
-        for degree, some in self._by_degree(states):
-            if degree:
-                yaw, back = self._yaw(states[some], degree)
-                way = likeliest_exits(yaw, seen, back, look, compass=self.compass)
-                darts = self._stars.darts(self._places(states[some]), degree)
-                arrived[some] = np.take_along_axis(darts, way, axis=1) ^ 1
-        moves = []
-        for i, at in enumerate(self._given):
-            to = arrived[:, at]
-            likely = np.bincount(to[to >= 0], weights=share[to >= 0], minlength=self._n_darts)
-            there = np.flatnonzero(likely)
-            group = looks[there]
-            size, weight = np.bincount(group), np.bincount(group, weights=likely[there])
-            left = float(np.dot(size, weight)) / max(float(weight.sum()), 1e-300)
-            moves.append(Move(i, Heading(float(seen[at])), left))
-        return tuple(sorted(moves, key=lambda move: round(move.left, 9)))
+        return self._forecast(self._outlook())
 
     def __repr__(self) -> str:
         if self.certain:
@@ -405,6 +371,30 @@ class Localizer:
         return f"Localizer({where}, {counted(self._moves, 'move')})"
 
     # -- inside --------------------------------------------------------------------------------------------------------
+
+    def _forecast(self, outlook: Outlook) -> tuple[Move, ...]:
+        moves = [
+            Move(i, Heading(float(outlook.exits[at])), expected_left(outlook.arrived[:, at], outlook))
+            for i, at in enumerate(self._given)
+        ]
+        return tuple(sorted(moves, key=lambda move: round(move.left, 9)))
+
+    def _outlook(self) -> Outlook:
+        """Return where each candidate would come by each exit seen."""
+        look = self._look
+        if look.exits is None or not look.exits.size:
+            raise BadInput("no exits were observed here, so there is none to choose; observe(exits=...) first")
+        rows = self._most(CERTAIN)
+        states = self._states[rows]
+        arrived = np.full((rows.size, look.exits.size), -1)
+        for degree, some in self._by_degree(states):
+            if degree:
+                yaw, back = self._yaw(states[some], degree)
+                way = likeliest_exits(yaw, look.exits, back, look, compass=self.compass)
+                darts = self._stars.darts(self._places(states[some]), degree)
+                arrived[some] = np.take_along_axis(darts, way, axis=1) ^ 1
+        looks = self._stars.looks(max(3 * self._noise.sigma, TAU / 72), compass=self.compass)
+        return Outlook(look.exits, arrived, np.exp(self._log[rows]), looks)
 
     def _places(self, states: NDArray[np.int64]) -> NDArray[np.int64]:
         alone = states >= self._n_darts
@@ -478,40 +468,6 @@ class Localizer:
         before = Before(np.unique(self._places(self._states)), self._observations, self._moves)
         noise = f"sigma {degrees(self._noise.sigma):.3g} degrees{'' if self.compass else ', without a compass'}"
         raise empty_belief(self.plane, self._stars, before, look, what, noise, self._unit, compass=self.compass)
-
-
-def _read(exits: Iterable[Heading] | None, came_by: Heading | int | None) -> tuple[Look, tuple[int, ...]]:
-    """Return what was seen, exits by rising yaw, and where each exit given is in it."""
-    given: tuple[int, ...] = ()
-    yaw = None
-    if exits is not None:
-        if isinstance(exits, Heading | str) or not isinstance(exits, Iterable):
-            raise BadInput(f"exits are a list of headings, such as [Heading.from_degrees(90)], not {quoted(exits)}")
-        listed = list(exits)
-        wrong = next((x for x in listed if not isinstance(x, Heading)), None)
-        if wrong is not None:
-            raise BadInput(f"an exit is a Heading, such as Heading.from_degrees(90), not {quoted(wrong)}")
-        found = np.array([x.yaw for x in listed], np.float64)
-        order = np.argsort(found, kind="stable")
-        yaw = found[order]
-        given = tuple(np.argsort(order, kind="stable").tolist())
-    if came_by is None:
-        if yaw is None:
-            raise BadInput("nothing was seen: give exits, came_by or both")
-        return Look(yaw), given
-    if isinstance(came_by, Heading):
-        return Look(yaw, back=came_by.yaw), given
-    if isinstance(came_by, bool) or not isinstance(came_by, Integral):
-        raise BadInput(f"came_by is the position of an exit, or a Heading, not {quoted(came_by)}")
-    if not 0 <= came_by < len(given):
-        raise BadInput(f"came_by is a position in the {counted(len(given), 'exit')} given, from 0 on, not {came_by}")
-    return Look(yaw, back_exit=given[int(came_by)]), given
-
-
-def _finite(what: str, value: float) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise BadInput(f"{what} is a finite number of radians, not {quoted(value)}")
-    return float(value)
 
 
 def _normal(log_weight: NDArray[np.float64]) -> NDArray[np.float64]:
