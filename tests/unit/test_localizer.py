@@ -383,6 +383,8 @@ def test_what_cannot_be_is_refused_in_one_line(yard):
         ),
         (lambda: robot.move(EAST, turn=float("inf")), "a turn is a finite number of radians, not inf"),
         (lambda: robot.candidates(0), "mass is a probability above 0 and at most 1, not 0"),
+        (lambda: Localizer("yard.atlas", sigma=0.1), "a PlaneMap is needed, such as read_map gives, not 'yard.atlas'"),
+        (lambda: Localizer(yard, sigma=0.1, unit="deg"), "unit is one of yaw-rad, yaw-deg, bearing-deg, not 'deg'"),
         (lambda: Localizer(yard, sigma=0.1, missed=1), "missed is a probability from 0 to below 1, not 1"),
         (lambda: Localizer(yard, sigma=0.1, extra=0.1, compass=False), "missed and extra are for compass=True"),
         (lambda: Localizer(PlaneMap.from_rotation({"a": ["b"], "b": ["a"]}), sigma=0.1), "has no headings"),

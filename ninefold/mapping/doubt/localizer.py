@@ -10,7 +10,7 @@ from __future__ import annotations
 from copy import copy
 from math import degrees, exp, log, pi
 from numbers import Integral
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 
@@ -19,7 +19,9 @@ from ninefold.errors import BadInput
 
 from ..heading import TAU, Heading
 from ..numbering import Dart
+from ..plane import PlaneMap
 from ..robot.units import unit_of
+from ..robot.walk import HeadingUnit
 from ._ahead import Outlook, expected_left, towards_a_difference
 from ._matching import GATE, Look, Noise, weights
 from ._nothing_left import Before, empty_belief
@@ -34,8 +36,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..plane import PlaneMap
-    from ..robot.walk import HeadingUnit
     from ..sets import Set
 
 __all__ = ["Candidate", "Localizer", "Move"]
@@ -148,6 +148,10 @@ class Localizer:
         extra: float = 0.0,
         unit: HeadingUnit = "yaw-deg",
     ) -> None:
+        if not isinstance(plane, PlaneMap):
+            raise BadInput(f"a PlaneMap is needed, such as read_map gives, not {quoted(plane)}")
+        if unit not in get_args(HeadingUnit):
+            raise BadInput(f"unit is one of {', '.join(get_args(HeadingUnit))}, not {quoted(unit)}")
         if plane.heading is None or plane.turn is None:
             raise BadInput(
                 f"{plane!r} has no headings, by which a robot could be found; build the map from a walk or from geometry"
