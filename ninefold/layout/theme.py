@@ -28,7 +28,7 @@ FIXED = {"light": ("#1450C4", "#2E9E63", "#7A1E6A", "#CA8411"), "dark": ("#5498F
 EVENED = {"light": "#8C9199", "dark": "#7C848E"}
 CONTRADICTED = {"light": "#B5150F", "dark": "#F2603A"}
 
-BELIEF = {"light": ("#A3123F", "#DD5A22", "#E9A23B", "#B8AE8C"), "dark": ("#FF5A86", "#FF8B47", "#F6C453", "#8F8A74")}
+BELIEF = {"light": ("#8E0F3C", "#DD5A22", "#EFAF3A", "#A39C86"), "dark": ("#F0386B", "#FFA04A", "#FFE985", "#7F93A6")}
 
 LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E2227", "faint": "#6B6F76"}
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}

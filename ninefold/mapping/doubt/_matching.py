@@ -216,7 +216,7 @@ def _one_exit_more(sums: dict[int, Floats], weight: Floats, possible: list[int],
     if len(after) > _MOST_SETS:
         raise TooLarge(
             f"{counted(k, 'exit')} of one place lie so close together that which is which has too many answers to add up; "
-            "give a smaller sigma, or the headings of fewer exits with missed > 0"
+            "leave its exits out, or give a smaller sigma if headings are that good"
         )
     return after
 
