@@ -209,6 +209,7 @@ class Drawing(Immutable):
         width: int = 800,
         rigidity: bool | Rigidity = False,
         health: bool | Health = False,
+        belief: ArrayLike | None = None,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -231,12 +232,15 @@ class Drawing(Immutable):
         health
             Colour the edges by how far their headings and turn disagree, in degrees, on one scale for all maps. True, or
             what `ninefold.mapping.health` returned; not together with `rigidity`.
+        belief
+            (V,) how likely a robot is at each place, such as ``Localizer.probabilities``: the likely places are marked, and
+            the likeliest named.
 
         Raises
         ------
         BadInput, DifferentMaps
-            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
-            `rigidity` or `health` for a map without headings.
+            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map,
+            `rigidity` or `health` for a map without headings, or a belief that is none.
         """
         from .svg import render
 
@@ -249,6 +253,7 @@ class Drawing(Immutable):
             width=width,
             rigidity=rigidity,
             health=health,
+            belief=belief,
         )
 
     def save(self, path: str | Path, **options: Any) -> None:
