@@ -1,0 +1,617 @@
+"""Kernels of the search for quotients of a folded walk: a plane map with stubs that grows by one decision at a time.
+
+A *place* is a set of nodes that are one, with the exits of its first node. A *stub* is an exit of a place that has no mate
+yet. Deciding a stub means to say where the way behind it ends: at a new place, or at another stub of the same face, whose
+*contour* is walked clockwise from stub to stub. Whatever follows is folded in: the nodes beyond both exits become one, and so
+on. Every decision is taken back exactly.
+
+Arrays are in one named tuple, `Quotient`; columns have names below. Exit x of node n is ``n * K + x``, exit x of place w is
+``w * K + x``. Angles are radians. All functions change the arrays they are given.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ninefold._kernels import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Quotient", "searched"]
+
+# columns of `node`
+DEGREE, PLACE, SHIFT, NEXT, SIGN, UNITS, FAILS = 0, 1, 2, 3, 4, 5, 6
+# columns of `way`
+OTHER, BACK, KIND, LENGTH = 0, 1, 2, 3
+# columns of `angle` and `bearing`
+HEADING, TURN = 0, 1
+# columns of `place`: DEGREE, FIRST, SIGN_OF_PLACE, REFERENCE
+FIRST, SIGN_OF_PLACE, REFERENCE = 1, 2, 3
+# columns of `exit`: MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY
+MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY = 0, 1, 2, 3, 4
+# columns of `kind`
+STUBS, ENDS, COMPONENT, SIDE = 0, 1, 2, 3
+# columns of `sign`, kinds of its exits after them
+UNITS_LEFT, DEMAND, DEGREE_OF_SIGN, KINDS = 0, 1, 2, 3
+# rows of `number`
+N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT = 0, 1, 2, 3, 4, 5
+# rows of `control`, how the search stands
+DEPTH, TOP, GOING_DOWN, N_DECISIONS, N_FOUND, DONE = 0, 1, 2, 3, 4, 5
+# columns of `frame`
+STUB, BOTTOM, TRAIL_BEFORE, PLACES_BEFORE, ENTERED_STUB = 0, 1, 2, 3, 4
+
+NOTHING = -2
+NEW_PLACE = -1
+FULL = 2 * np.pi
+MICRO = 1e-6
+WHOLE_WITHIN = 0.02
+
+
+class Quotient(NamedTuple):
+    """The tree of a walk and a quotient in the making: N nodes, at most P places, K exits each, C kinds, S signatures."""
+
+    node: NDArray[np.int64]
+    """(N, 7): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures."""
+    way: NDArray[np.int64]
+    """(N K, 4): other node, exit there, kind; microradians that its edge can turn."""
+    angle: NDArray[np.float64]
+    """(N K, 2): heading, net turn."""
+    alike: NDArray[np.int64]
+    """(N, N): shifts under which two nodes can be one, as bits."""
+    place: NDArray[np.int64]
+    """(P, 4): degree, first node, signature, node whose exits it has."""
+    exit: NDArray[np.int64]
+    """(P K, 5): mate or -1, kind, a mark, how many ways may enter here, and the last of them."""
+    bearing: NDArray[np.float64]
+    """(P K, 2): heading, net turn of the edge."""
+    kind: NDArray[np.int64]
+    """(C, 4): stubs, ends of walked ways not placed; component and side of kinds joined by ways, if they have two sides."""
+    sign: NDArray[np.int64]
+    """(S, 3 + K): units left, units needed, degree, kinds."""
+    bend: NDArray[np.float64]
+    """(S,): largest reflex turn of a place."""
+    surplus: NDArray[np.int64]
+    """(S, B): exits of one side beyond those of the other, per component."""
+    number: NDArray[np.int64]
+    """(6,): places, length of the trail, microradians that edges not placed can turn, flags."""
+    limit: NDArray[np.float64]
+    """(2,): largest closing miss of an edge, radians; most places."""
+    trail: NDArray[np.int64]
+    """(N,): nodes in the order placed."""
+    queue: NDArray[np.int64]
+    """(Q, 3)."""
+    stub: NDArray[np.int64]
+    """(P K + 2,): stubs along a contour."""
+    turned: NDArray[np.float64]
+    """(P K + 2,): turn from the first stub to each of them."""
+    option: NDArray[np.int64]
+    """(P K + 2,): options of a stub."""
+    balance: NDArray[np.int64]
+    """(B, 3)."""
+    start: NDArray[np.int64]
+    """(N K + 1,): where the candidates of an exit begin."""
+    candidate: NDArray[np.int64]
+    """Exits of nodes that walk through an exit of a place that has this node's exits."""
+
+
+@kernel
+def wrapped(angle):  # type: ignore[no-untyped-def]
+    """Return an angle in [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+@kernel
+def clockwise(q, x):  # type: ignore[no-untyped-def]
+    """Return the exit of the same place that is next clockwise."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    if x % width:
+        return x - 1
+    return x + q.place[x // width, 0] - 1
+
+
+@kernel
+def corner(q, after, before):  # type: ignore[no-untyped-def]
+    """Return the angle counter-clockwise from exit `before` to exit `after` of one place, in (0, 2 pi]."""
+    angle = (q.bearing[after, 0] - q.bearing[before, 0]) % (2 * np.pi)
+    if angle < 1e-9 or after == before:
+        return 2 * np.pi
+    return angle
+
+
+@kernel
+def place_made(q, n):  # type: ignore[no-untyped-def]
+    """Make a place with the exits of a node; return it. The node is not put there yet."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    w = q.number[0]
+    q.number[0] += 1
+    q.place[w, 0] = q.node[n, 0]
+    q.place[w, 1] = -1
+    q.place[w, 2] = q.node[n, 4]
+    q.place[w, 3] = n
+    for x in range(q.node[n, 0]):
+        e = w * width + x
+        q.exit[e, 0] = -1
+        q.exit[e, 1] = q.way[n * width + x, 2]
+        q.bearing[e, 0] = q.angle[n * width + x, 0]
+        q.kind[q.exit[e, 1], 0] += 1
+    return w
+
+
+@kernel
+def put(q, n, w, shift):  # type: ignore[no-untyped-def]
+    """Put a node, and all nodes that follow, into places; return whether that can be. What is done is on the trail."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    head = 0
+    tail = 1
+    q.queue[0, 0] = n
+    q.queue[0, 1] = w
+    q.queue[0, 2] = shift
+    while head < tail:
+        n = q.queue[head, 0]
+        w = q.queue[head, 1]
+        shift = q.queue[head, 2]
+        head += 1
+        if q.node[n, 1] >= 0:
+            if q.node[n, 1] != w or q.node[n, 2] != shift:
+                return False
+            continue
+        degree = q.node[n, 0]
+        if q.place[w, 0] != degree:
+            return False
+        m = q.place[w, 1]
+        while m >= 0:
+            if degree > 0 and not (q.alike[n, m] >> ((shift - q.node[m, 2]) % degree)) & 1:
+                return False
+            m = q.node[m, 3]
+        q.node[n, 1] = w
+        q.node[n, 2] = shift
+        q.node[n, 3] = q.place[w, 1]
+        q.place[w, 1] = n
+        q.sign[q.node[n, 4], 0] -= q.node[n, 5]
+        q.trail[q.number[1]] = n
+        q.number[1] += 1
+        for x in range(degree):
+            e = n * width + x
+            m = q.way[e, 0]
+            if m < 0:
+                continue
+            back = q.way[e, 1]
+            if q.node[m, 1] >= 0:
+                q.kind[q.way[e, 2], 1] -= 1
+                q.kind[q.way[m * width + back, 2], 1] -= 1
+                q.number[2] -= q.way[e, 3]
+            mate = q.exit[w * width + (x + shift) % degree, 0]
+            if mate >= 0:
+                other = mate // width
+                if q.place[other, 0] != q.node[m, 0]:
+                    return False
+                q.queue[tail, 0] = m
+                q.queue[tail, 1] = other
+                q.queue[tail, 2] = (mate % width - back) % q.node[m, 0]
+                tail += 1
+    return True
+
+
+@kernel
+def taken_back(q, mark):  # type: ignore[no-untyped-def]
+    """Take nodes out of their places again until the trail is as long as it was."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    while q.number[1] > mark:
+        q.number[1] -= 1
+        n = q.trail[q.number[1]]
+        for x in range(q.node[n, 0]):
+            e = n * width + x
+            m = q.way[e, 0]
+            if m >= 0 and q.node[m, 1] >= 0:
+                q.kind[q.way[e, 2], 1] += 1
+                q.kind[q.way[m * width + q.way[e, 1], 2], 1] += 1
+                q.number[2] += q.way[e, 3]
+        q.place[q.node[n, 1], 1] = q.node[n, 3]
+        q.node[n, 1] = -1
+        q.sign[q.node[n, 4], 0] += q.node[n, 5]
+
+
+@kernel
+def folded(q, a, b):  # type: ignore[no-untyped-def]
+    """Let what lies beyond two exits that are mates now be one; return whether it can."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    for _ in range(2):
+        there = b // width
+        n = q.place[a // width, 1]
+        while n >= 0:
+            x = (a % width - q.node[n, 2]) % q.node[n, 0]
+            m = q.way[n * width + x, 0]
+            if m >= 0:
+                if q.node[m, 0] != q.place[there, 0]:
+                    return False
+                if not put(q, m, there, (b % width - q.way[n * width + x, 1]) % q.node[m, 0]):
+                    return False
+            n = q.node[n, 3]
+        a, b = b, a
+    return True
+
+
+@kernel
+def walked_from(q, stub):  # type: ignore[no-untyped-def]
+    """Return an exit of a placed node whose way leads through this stub, as node * K + exit, or -1."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    n = q.place[stub // width, 1]
+    while n >= 0:
+        e = n * width + (stub % width - q.node[n, 2]) % q.node[n, 0]
+        if q.way[e, 0] >= 0:
+            return e
+        n = q.node[n, 3]
+    return -1
+
+
+@kernel
+def contour(q, stub):  # type: ignore[no-untyped-def]
+    """Walk the face around a stub clockwise; return the number of other stubs met, in order, in `stub` and `turned`.
+
+    The turn to each counts the corners at either end; the turn after the last is that all the way round, the stub's own two
+    corners counted apart.
+    """
+    met = 0
+    total = 0.0
+    before = stub
+    x = stub
+    while True:
+        x = clockwise(q, x)
+        angle = np.pi - corner(q, before, x)
+        if x == stub:
+            q.turned[met] = total + angle
+            break
+        if q.exit[x, 0] < 0:
+            q.stub[met] = x
+            q.turned[met] = total + angle
+            met += 1
+        else:
+            total += angle + q.bearing[x, 1]
+            before = q.exit[x, 0]
+            x = before
+    return met
+
+
+@kernel
+def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
+    """Return how many ends the way through a stub can have; they are in `option`, -1 for a new place."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    m = q.way[walked, 0]
+    back = q.way[walked, 1]
+    turn = q.angle[walked, 1]
+    degree = q.node[m, 0]
+    met = contour(q, stub)
+    whole = q.turned[met] - np.pi
+    found = 0
+    if may_be_new:
+        q.option[0] = -1
+        found = 1
+    for j in range(met):
+        other = q.stub[j]
+        w = other // width
+        if q.place[w, 0] != degree:
+            continue
+        first = q.place[w, 1]
+        if not (q.alike[m, first] >> ((other % width - back - q.node[first, 2]) % degree)) & 1:
+            continue
+        miss = wrapped(q.bearing[other, 0] + np.pi - q.bearing[stub, 0] - turn)
+        if abs(miss) > q.limit[0]:
+            continue
+        turns = (q.turned[j] - turn - miss) / (2 * np.pi)
+        if q.number[5] == 1:
+            nearest = int(np.rint(turns))
+            if abs(turns - nearest) > 0.02:
+                continue
+            if nearest != 1 and (nearest != -1 or whole > 0):
+                continue
+        q.option[found] = other
+        found += 1
+    return found
+
+
+@kernel
+def places_possible(q, s):  # type: ignore[no-untyped-def]
+    """Return how many places of a signature can still be made: ways left must cover every exit, and the stubs there are."""
+    most = (q.sign[s, 0] - q.sign[s, 1]) // ((q.sign[s, 2] + 1) // 2)
+    for x in range(q.sign[s, 2]):
+        k = q.sign[s, 3 + x]
+        spare = q.kind[k, 1] - q.kind[k, 0]
+        if spare < most:
+            most = spare
+    return most
+
+
+@kernel
+def demanded(q):  # type: ignore[no-untyped-def]
+    """Work out what open exits that no way leads through demand of nodes left; return whether there are enough.
+
+    A node left covers some exits of one place: the sum over places of half their open exits, rounded up, is at most the sum
+    over nodes of half the ways they walk, rounded up.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    for s in range(q.sign.shape[0]):
+        q.sign[s, 1] = 0
+    for w in range(q.number[0]):
+        unwalked = 0
+        for x in range(q.place[w, 0]):
+            e = w * width + x
+            if q.exit[e, 0] < 0 and walked_from(q, e) < 0:
+                unwalked += 1
+        q.sign[q.place[w, 2], 1] += (unwalked + 1) // 2
+    for s in range(q.sign.shape[0]):
+        if q.sign[s, 1] > q.sign[s, 0]:
+            return False
+    return True
+
+
+@kernel
+def within_budget(q):  # type: ignore[no-untyped-def]
+    """Return whether every face can still turn as it must.
+
+    A chain is the piece of a face between two stubs. An inner face of the whole map has 2 pi more positive turn than negative,
+    so what a chain has beyond 2 pi must be paid for by negative turn elsewhere in its region: by other chains there, by places
+    not made yet, or by edges not placed yet. And where ways join kinds of exits of two sides, the stubs of a region must be
+    balanced by places to come.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    sides = q.balance.shape[0]
+    possible = q.number[2] * 1e-6
+    for s in range(q.sign.shape[0]):
+        if q.bend[s] > 0:
+            possible += max(places_possible(q, s), 0) * q.bend[s]
+    for b in range(sides):
+        q.balance[b, 1] = 0
+        q.balance[b, 2] = 0
+    for w in range(q.number[0]):
+        for x in range(q.place[w, 0]):
+            q.exit[w * width + x, 2] = 0
+    needed = 0.0
+    for w in range(q.number[0]):
+        for first in range(q.place[w, 0]):
+            begin = w * width + first
+            if q.exit[begin, 0] >= 0 or q.exit[begin, 2]:
+                continue
+            for b in range(sides):
+                q.balance[b, 0] = 0
+            excess = 0.0
+            negative = 0.0
+            total = 0.0
+            paid = 0.0
+            stubs = 0
+            x = begin
+            while True:
+                q.exit[x, 2] = 1
+                stubs += 1
+                k = q.exit[x, 1]
+                if q.kind[k, 2] >= 0:
+                    q.balance[q.kind[k, 2], 0] += q.kind[k, 3]
+                up = 0.0
+                down = 0.0
+                before = x
+                while True:
+                    x = clockwise(q, x)
+                    angle = np.pi - corner(q, before, x)
+                    up += max(angle, 0.0)
+                    down += max(-angle, 0.0)
+                    if q.exit[x, 0] < 0:
+                        break
+                    angle = q.bearing[x, 1]
+                    up += max(angle, 0.0)
+                    down += max(-angle, 0.0)
+                    before = q.exit[x, 0]
+                    x = before
+                excess += max(up - 2 * np.pi, 0.0)
+                paid += min(up, down)
+                negative += down
+                total += up - down
+                if x == begin:
+                    break
+            for b in range(sides):
+                if q.balance[b, 0] > 0:
+                    q.balance[b, 1] += q.balance[b, 0]
+                else:
+                    q.balance[b, 2] -= q.balance[b, 0]
+            if total - np.pi * stubs < 0:  # the region of the outer face, which has 2 pi more negative turn than positive
+                excess = max(excess, paid) + 2 * np.pi
+            needed += max(excess - negative, 0.0)
+            if needed > possible + 1e-5:
+                return False
+    for b in range(sides):
+        if q.balance[b, 1] > 0 or q.balance[b, 2] > 0:
+            up_left = 0
+            down_left = 0
+            for s in range(q.sign.shape[0]):
+                if q.surplus[s, b]:
+                    most = max(places_possible(q, s), 0)
+                    up_left += most * max(q.surplus[s, b], 0)
+                    down_left += most * max(-q.surplus[s, b], 0)
+            if q.balance[b, 1] > down_left or q.balance[b, 2] > up_left:
+                return False
+    return True
+
+
+@kernel
+def decided(q, stub, end):  # type: ignore[no-untyped-def]
+    """Let the way through a stub end at another stub, or at a new place (-1).
+
+    Returns (the stub entered, whether that can be); either way it is to be taken back by `undone`.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    walked = walked_from(q, stub)
+    m = q.way[walked, 0]
+    turn = q.angle[walked, 1]
+    new = end == -1
+    if new:
+        end = place_made(q, m) * width + q.way[walked, 1]
+        if q.number[3]:  # without a compass a place gets its frame from the way that led there
+            carried = q.bearing[stub, 0] + np.pi + turn - q.bearing[end, 0]
+            first = end - q.way[walked, 1]
+            for x in range(q.node[m, 0]):
+                q.bearing[first + x, 0] += carried
+    settled = turn + wrapped(q.bearing[end, 0] + np.pi - q.bearing[stub, 0] - turn)
+    q.exit[stub, 0] = end
+    q.exit[end, 0] = stub
+    q.bearing[stub, 1] = settled
+    q.bearing[end, 1] = -settled
+    q.kind[q.exit[stub, 1], 0] -= 1
+    q.kind[q.exit[end, 1], 0] -= 1
+    if new and not put(q, m, end // width, 0):
+        return end, False
+    if not folded(q, stub, end):
+        return end, False
+    if q.number[4] == 1:
+        for k in range(q.kind.shape[0]):
+            if q.kind[k, 0] > q.kind[k, 1]:
+                return end, False
+        if not demanded(q):
+            return end, False
+        if q.number[5] == 1 and not within_budget(q):
+            return end, False
+    return end, True
+
+
+@kernel
+def undone(q, stub, end, trail, places):  # type: ignore[no-untyped-def]
+    """Take a decision back: the trail and the places are as they were."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    taken_back(q, trail)
+    q.exit[stub, 0] = -1
+    q.exit[end, 0] = -1
+    q.kind[q.exit[stub, 1], 0] += 1
+    q.kind[q.exit[end, 1], 0] += 1
+    if q.number[0] > places:
+        q.number[0] = places
+        for x in range(q.place[places, 0]):
+            q.kind[q.exit[places * width + x, 1], 0] -= 1
+
+
+@kernel
+def branch(q, best):  # type: ignore[no-untyped-def]
+    """Choose the stub to decide next, the one with the fewest ends; they are put into `best`.
+
+    Returns (stub or -1 if all walked ways are placed, number of ends). For closed maps, a stub that no way leads through has
+    to be entered by some: by none of those that end in its face or by a node still to come, it fails; by one alone, that one
+    is decided.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    closed = q.number[4] == 1
+    chosen = -1
+    fewest = 1 << 30
+    heaviest = -1
+    if closed:
+        for e in range(q.number[0] * width):
+            q.exit[e, 3] = 0
+    may_be_new = q.number[0] < q.limit[1]
+    for w in range(q.number[0]):
+        for x in range(q.place[w, 0]):
+            e = w * width + x
+            if q.exit[e, 0] >= 0:
+                continue
+            walked = walked_from(q, e)
+            if walked < 0:
+                continue
+            m = q.way[walked, 0]
+            found = options(q, e, walked, may_be_new)
+            if closed:
+                for j in range(found):
+                    if q.option[j] >= 0:
+                        q.exit[q.option[j], 3] += 1
+                        q.exit[q.option[j], 4] = e
+            if found == 0:
+                q.node[m, 6] += 1
+                return e, 0
+            if found < fewest or (found == fewest and found > 1 and q.node[m, 6] > heaviest):
+                chosen = e
+                fewest = found
+                heaviest = q.node[m, 6]
+                for j in range(found):
+                    best[j] = q.option[j]
+    if not closed or chosen < 0:
+        return chosen, fewest
+    for w in range(q.number[0]):
+        for x in range(q.place[w, 0]):
+            e = w * width + x
+            if q.exit[e, 0] >= 0 or q.exit[e, 3] > 1 or (q.exit[e, 3] == 1 and fewest == 1) or walked_from(q, e) >= 0:
+                continue
+            reference = q.place[w, 3]
+            own = reference * width + (x - q.node[reference, 2]) % q.place[w, 0]
+            later = False
+            for i in range(q.start[own], q.start[own + 1]):
+                n = q.candidate[i] // width
+                if q.node[n, 1] < 0 and q.node[q.way[q.candidate[i], 0], 1] < 0:
+                    later = True
+                    break
+            if later:
+                continue
+            if q.exit[e, 3] == 0:
+                return e, 0
+            chosen = q.exit[e, 4]
+            fewest = 1
+            best[0] = e
+    return chosen, fewest
+
+
+@kernel(compile_seconds=9.0)
+def searched(q, control, frame, choice, best, out, stop):  # type: ignore[no-untyped-def]
+    """Search on from where the search stands; return how many quotients were found, the places of all nodes in `out`.
+
+    Parameters: control (6,) and frame (depth, 5), choice: how the search stands; best: scratch; out (B, N, 2): place and shift
+    of every node; stop: decisions after which to return. Returns early when `out` is full. control[DONE] tells the end.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    found = 0
+    made = 0
+    down = control[2] == 1
+    depth = control[0]
+    top = control[1]
+    while True:
+        if down:
+            if made >= stop or found == out.shape[0]:
+                control[2] = 1
+                break
+            made += 1
+            stub, number = branch(q, best)
+            if stub < 0:
+                whole = True
+                if q.number[4] == 1:
+                    for k in range(q.kind.shape[0]):
+                        if q.kind[k, 0] > 0:
+                            whole = False
+                if whole:
+                    for n in range(q.node.shape[0]):
+                        out[found, n, 0] = q.node[n, 1]
+                        out[found, n, 1] = q.node[n, 2]
+                    found += 1
+            else:
+                frame[depth, 0] = stub
+                frame[depth, 1] = top
+                for j in range(number):
+                    choice[top + j] = best[number - 1 - j]
+                top += number
+                frame[depth, 2] = q.number[1]
+                frame[depth, 3] = q.number[0]
+                frame[depth, 4] = -2
+                depth += 1
+        if depth == 0:
+            control[5] = 1
+            break
+        f = depth - 1
+        if frame[f, 4] != -2:
+            undone(q, frame[f, 0], frame[f, 4], frame[f, 2], frame[f, 3])
+            frame[f, 4] = -2
+        if top <= frame[f, 1]:
+            depth -= 1
+            down = False
+            continue
+        top -= 1
+        end, down = decided(q, frame[f, 0], choice[top])
+        frame[f, 4] = end
+    control[0] = depth
+    control[1] = top
+    control[3] += made
+    control[4] += found
+    return found
+

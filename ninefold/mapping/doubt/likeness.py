@@ -1,0 +1,124 @@
+"""Which nodes of a folded walk can be one place, and what that says of their exits.
+
+Two nodes can be one place under a shift k, exit x of the one being exit x + k of the other, when they have as many exits and
+the headings agree within the tolerance: with a compass as they are, without one up to a common turn. Exits that some chain of
+such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..heading import TAU
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from .walk_tree import WalkTree
+
+__all__ = ["Likeness", "likeness"]
+
+
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """What of a tree of N nodes can be the same.
+
+    Attributes
+    ----------
+    shifts
+        (N, N) int64; bit k of entry (n, m): node n can be node m, its exit x the other's exit x + k.
+    kind
+        (N, K) int64, the kind of every exit, -1 beyond the degree.
+    n_kinds
+        Number of kinds.
+    signature
+        (N,) int64: nodes with the same kinds of exits have one.
+    """
+
+    shifts: NDArray[np.int64]
+    kind: NDArray[np.int64]
+    n_kinds: int
+    signature: NDArray[np.int64]
+
+
+def likeness(tree: WalkTree, *, differ: Iterable[tuple[int, int]] = ()) -> Likeness:
+    """Compare all nodes of a tree.
+
+    Parameters
+    ----------
+    differ
+        Pairs of nodes known to be different places, beside those whose names differ.
+
+    Notes
+    -----
+    Complexity O(N squared times K squared), array code.
+    """
+    shifts = _shifts(tree)
+    named: dict[str, list[int]] = {}
+    for n, name in enumerate(tree.names):
+        if name is not None:
+            named.setdefault(name, []).append(n)
+    groups = list(named.values())
+    for i, group in enumerate(groups):
+        for others in groups[:i]:
+            shifts[np.ix_(group, others)] = 0
+            shifts[np.ix_(others, group)] = 0
+    for n, m in differ:
+        shifts[n, m] = shifts[m, n] = 0
+    kind, n_kinds = _kinds(tree, shifts)
+    keys = [tuple(sorted(kind[n, : tree.degree[n]].tolist())) for n in range(tree.n_nodes)]
+    number: dict[tuple[int, ...], int] = {}
+    signature = np.array([number.setdefault(key, len(number)) for key in keys], np.int64)
+    return Likeness(shifts, kind, n_kinds, signature)
+
+
+def _shifts(tree: WalkTree) -> NDArray[np.int64]:
+    count = tree.n_nodes
+    found = np.zeros((count, count), np.int64)
+    for degree in np.unique(tree.degree).tolist():
+        nodes = np.flatnonzero(tree.degree == degree)
+        if degree == 0:
+            found[np.ix_(nodes, nodes)] = 1
+            continue
+        heading = tree.heading[nodes, :degree]
+        bits = np.zeros((nodes.size, nodes.size), np.int64)
+        for k in range(degree):
+            miss = np.roll(heading, -k, axis=1)[None, :, :] - heading[:, None, :]
+            if not tree.compass:
+                miss = miss - miss[:, :, :1]
+            miss -= TAU * np.round(miss / TAU)
+            bits |= (np.abs(miss).max(axis=2) <= tree.tolerance + 1e-12).astype(np.int64) << k
+        found[np.ix_(nodes, nodes)] = bits
+    np.fill_diagonal(found, 1)
+    return found
+
+
+def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count, most = tree.heading.shape
+    left: list[NDArray[np.int64]] = []
+    right: list[NDArray[np.int64]] = []
+    for degree in np.unique(tree.degree).tolist():
+        nodes = np.flatnonzero(tree.degree == degree)
+        bits = shifts[np.ix_(nodes, nodes)]
+        for k in range(degree):
+            n, m = np.nonzero((bits >> k) & 1)
+            for x in range(degree):
+                left.append(nodes[n] * most + x)
+                right.append(nodes[m] * most + (x + k) % degree)
+    size = count * most
+    if not left:
+        return np.full((count, most), -1, np.int64), 0
+    a, b = np.concatenate(left), np.concatenate(right)
+    _, label = connected_components(coo_array((np.ones(a.size, np.int8), (a, b)), shape=(size, size)), directed=False)
+    real = (np.arange(most)[None, :] < tree.degree[:, None]).reshape(-1)
+    kind = np.full(size, -1, np.int64)
+    _, kind[real] = np.unique(label[real], return_inverse=True)
+    return kind.reshape(count, most), int(kind.max()) + 1

@@ -1,0 +1,282 @@
+"""Every plane map that explains a folded walk, found by splitting faces.
+
+A hypothesis is a quotient of the tree of a walk: nodes merged into places, every exit used by one way, congruent along the
+ways walked. It grows from one node as a plane map with stubs, exits behind which the walk goes on but that are not decided
+yet. The way through a stub ends at a new place or at another stub *of the same face*: a closure across two faces would add
+genus, so these are all the ends there are. The face it closes must turn +1; or -1 if it is all that the outside has. The
+stub with the fewest ends is decided next; what contradicts is taken back.
+
+For closed maps, in which no exit is left untravelled, much more can be told early: see `_quotient_kernels` (kinds of exits,
+demand, the turning budget). Which node the search begins with changes nothing in its answer and a lot in its time.
+
+References
+----------
+F. Savelli and B. Kuipers, Loop-closing and planarity in topological map-building, IROS 2004: planarity in the tree of all maps.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..heading import TAU
+from . import _quotient_kernels as kernels
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .likeness import Likeness
+    from .walk_tree import WalkTree
+
+__all__ = ["QuotientSearch"]
+
+SLICE = 4096
+"""Quotients found, and decisions made, between two looks at a budget."""
+
+
+class QuotientSearch:
+    """A search that can be stopped and gone on with.
+
+    Parameters
+    ----------
+    tree, alike
+        The walk, and what of it can be the same.
+    root
+        The node to begin with.
+    closed
+        Whether no exit may be left untravelled.
+    turning
+        False judges genus alone; for tests.
+    most_places
+        Places of a map at most, or None.
+
+    Attributes
+    ----------
+    decisions, found
+        How many were made, and how many quotients were found so far.
+    done
+        Whether the search has come to its end: then `found` is the number of quotients.
+    """
+
+    def __init__(
+        self,
+        tree: WalkTree,
+        alike: Likeness,
+        *,
+        root: int = 0,
+        closed: bool = False,
+        turning: bool = True,
+        most_places: int | None = None,
+        fails: NDArray[np.int64] | None = None,
+    ) -> None:
+        self.tree = tree
+        self._state = _quotient(tree, alike, closed=closed, turning=turning, most_places=most_places)
+        if fails is not None:
+            self._state.node[:, kernels.FAILS] = fails
+        count, width = tree.heading.shape
+        self._control = np.zeros(6, np.int64)
+        self._control[kernels.GOING_DOWN] = 1
+        self._frame = np.zeros((count + 2, 5), np.int64)
+        self._choice = np.zeros((count + 2) * (count * width + 2) if count < 64 else count * 256 + 4096, np.int64)
+        self._best = np.zeros(self._state.option.size, np.int64)
+        place = kernels.place_made(self._state, root)
+        self._possible = bool(kernels.put(self._state, root, place, 0))
+        if not self._possible:
+            self._control[kernels.DONE] = 1
+
+    @property
+    def decisions(self) -> int:
+        return int(self._control[kernels.N_DECISIONS])
+
+    @property
+    def found(self) -> int:
+        return int(self._control[kernels.N_FOUND])
+
+    @property
+    def done(self) -> bool:
+        return bool(self._control[kernels.DONE])
+
+    @property
+    def fails(self) -> NDArray[np.int64]:
+        """How often every node was in the way: a hint for another search of the same tree."""
+        return self._state.node[:, kernels.FAILS].copy()
+
+    def more(self, decisions: int, most: int = SLICE) -> NDArray[np.int64]:
+        """Go on for some decisions; return the quotients found, (B, N, 2): place and shift of every node.
+
+        Notes
+        -----
+        A decision costs O(stubs of the map times length of their faces).
+        """
+        if self.done:
+            return np.zeros((0, self.tree.n_nodes, 2), np.int64)
+        out = np.zeros((most, self.tree.n_nodes, 2), np.int64)
+        form = kernels.searched.for_work(decisions * 60 * self.tree.n_nodes)
+        found = int(form(self._state, self._control, self._frame, self._choice, self._best, out, decisions))
+        return out[:found]
+
+
+def _quotient(
+    tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, most_places: int | None
+) -> kernels.Quotient:
+    """Lay out the state of a search."""
+    count, width = tree.heading.shape
+    places = count + 1
+    walked = tree.other >= 0
+    node = np.zeros((count, 7), np.int64)
+    node[:, kernels.DEGREE] = tree.degree
+    node[:, kernels.PLACE] = -1
+    node[:, kernels.NEXT] = -1
+    node[:, kernels.SIGN] = alike.signature
+    node[:, kernels.UNITS] = (walked.sum(axis=1) + 1) // 2
+    way = np.zeros((count * width, 4), np.int64)
+    way[:, kernels.OTHER] = tree.other.reshape(-1)
+    way[:, kernels.BACK] = tree.back.reshape(-1)
+    way[:, kernels.KIND] = alike.kind.reshape(-1)
+    turn = np.where(walked, np.abs(tree.turn) + _slack(tree, alike), 0.0)
+    way[:, kernels.LENGTH] = np.ceil(turn.reshape(-1) / kernels.MICRO).astype(np.int64)
+    angle = np.zeros((count * width, 2))
+    angle[:, kernels.HEADING] = np.nan_to_num(tree.heading).reshape(-1)
+    angle[:, kernels.TURN] = tree.turn.reshape(-1)
+    sign, bend = _signatures(tree, alike, node)
+    kind, surplus = _sides(tree, alike, sign)
+    number = np.zeros(6, np.int64)
+    number[kernels.TURN_LEFT] = int(way[:, kernels.LENGTH].sum()) // 2
+    number[kernels.RELATIVE] = not tree.compass
+    number[kernels.CLOSED] = closed
+    number[kernels.STRICT] = turning
+    limit = np.array([4 * tree.tolerance + 1e-9, most_places or places], np.float64)
+    start, candidate = _candidates(tree, alike)
+    return kernels.Quotient(
+        node,
+        way,
+        angle,
+        alike.shifts,
+        np.zeros((places, 4), np.int64),
+        np.full((places * width, 5), -1, np.int64),
+        np.zeros((places * width, 2)),
+        kind,
+        sign,
+        bend,
+        surplus,
+        number,
+        limit,
+        np.zeros(count, np.int64),
+        np.zeros((8 * count + 16, 3), np.int64),
+        np.zeros(places * width + 2, np.int64),
+        np.zeros(places * width + 2),
+        np.zeros(places * width + 2, np.int64),
+        np.zeros((surplus.shape[1], 3), np.int64),
+        start,
+        candidate,
+    )
+
+
+def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:
+    """Return by how much an edge of the map may turn more than the leg along an exit: its place may have other headings."""
+    if not tree.compass:
+        return np.full(tree.heading.shape, 4 * tree.tolerance)
+    low, high = np.zeros(tree.heading.shape), np.zeros(tree.heading.shape)
+    for degree in np.unique(tree.degree).tolist():
+        nodes = np.flatnonzero(tree.degree == degree)
+        bits = alike.shifts[np.ix_(nodes, nodes)]
+        yaw = tree.heading[nodes, :degree]
+        for k in range(degree):
+            n, m = np.nonzero((bits >> k) & 1)
+            off = np.roll(yaw, -k, axis=1)[m] - yaw[n]
+            off -= TAU * np.round(off / TAU)
+            for x in range(degree):
+                np.minimum.at(low, (nodes[n], x), off[:, x])
+                np.maximum.at(high, (nodes[n], x), off[:, x])
+    n, x = np.nonzero(tree.other >= 0)
+    m, y = tree.other[n, x], tree.back[n, x]
+    miss = tree.heading[m, y] + np.pi - tree.heading[n, x] - tree.turn[n, x]
+    miss -= TAU * np.round(miss / TAU)
+    slack = np.zeros(tree.heading.shape)
+    slack[n, x] = np.maximum(np.abs(miss + high[m, y] - low[n, x]), np.abs(miss + low[m, y] - high[n, x]))
+    return slack
+
+
+def _signatures(
+    tree: WalkTree, alike: Likeness, node: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return what nodes of each signature have in common, and the largest reflex turn of such a place."""
+    width = tree.heading.shape[1]
+    count = int(alike.signature.max()) + 1
+    sign = np.zeros((count, 3 + width), np.int64)
+    bend = np.zeros(count)
+    for n in range(tree.n_nodes):
+        s, degree = int(alike.signature[n]), int(tree.degree[n])
+        sign[s, kernels.DEGREE_OF_SIGN] = degree
+        sign[s, kernels.KINDS : kernels.KINDS + degree] = alike.kind[n, :degree]
+        sign[s, kernels.UNITS_LEFT] += node[n, kernels.UNITS]
+        if degree:
+            yaw = tree.heading[n, :degree]
+            corners = np.diff(np.append(yaw, yaw[0] + TAU))
+            reflex = float(np.maximum(corners - np.pi, 0.0).sum()) if degree > 1 else np.pi
+            bend[s] = max(bend[s], reflex)
+    return sign, bend
+
+
+def _sides(
+    tree: WalkTree, alike: Likeness, sign: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Colour the kinds of exits with two sides so that every way joins the two, where that can be done.
+
+    Returns the table of kinds and, per signature and component, how many exits of one side its places have beyond the other.
+    """
+    beside: list[set[int]] = [set() for _ in range(alike.n_kinds)]
+    kind = np.zeros((alike.n_kinds, 4), np.int64)
+    kind[:, kernels.COMPONENT] = -1
+    n, x = np.nonzero(tree.other >= 0)
+    here, there = alike.kind[n, x], alike.kind[tree.other[n, x], tree.back[n, x]]
+    np.add.at(kind[:, kernels.ENDS], here, 1)
+    for a, b in set(zip(here.tolist(), there.tolist(), strict=True)):
+        beside[a].add(b)
+    components = 0
+    side = [0] * alike.n_kinds
+    for first in range(alike.n_kinds):
+        if side[first] or not beside[first]:
+            continue
+        side[first], two_sided = 1, True
+        members = [first]
+        for a in members:
+            for b in beside[a]:
+                if not side[b]:
+                    side[b] = -side[a]
+                    members.append(b)
+                two_sided &= side[b] != side[a]
+        if two_sided:
+            kind[members, kernels.COMPONENT] = components
+            kind[members, kernels.SIDE] = [side[a] for a in members]
+            components += 1
+    surplus = np.zeros((sign.shape[0], max(components, 1)), np.int64)
+    for s in range(sign.shape[0]):
+        for k in sign[s, kernels.KINDS : kernels.KINDS + sign[s, kernels.DEGREE_OF_SIGN]].tolist():
+            if kind[k, kernels.COMPONENT] >= 0:
+                surplus[s, kind[k, kernels.COMPONENT]] += kind[k, kernels.SIDE]
+    return kind, surplus[:, :components] if components else surplus[:, :0]
+
+
+def _candidates(tree: WalkTree, alike: Likeness) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return, for every exit of a node, the walked exits of nodes that could be it: where each begins, and all of them."""
+    count, width = tree.heading.shape
+    owner: list[NDArray[np.int64]] = []
+    found: list[NDArray[np.int64]] = []
+    for degree in np.unique(tree.degree).tolist():
+        nodes = np.flatnonzero(tree.degree == degree)
+        bits = alike.shifts[np.ix_(nodes, nodes)]
+        for k in range(degree):
+            n, m = np.nonzero((bits >> k) & 1)
+            for x in range(degree):
+                y = (x + k) % degree
+                walked = tree.other[nodes[m], y] >= 0
+                owner.append(nodes[n[walked]] * width + x)
+                found.append(nodes[m[walked]] * width + y)
+    if not owner:
+        return np.zeros(count * width + 1, np.int64), np.zeros(1, np.int64)
+    exits, others = np.concatenate(owner), np.concatenate(found)
+    order = np.argsort(exits, kind="stable")
+    start = np.searchsorted(exits[order], np.arange(count * width + 1)).astype(np.int64)
+    return start, np.append(others[order], 0).astype(np.int64)
