@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Quotient", "searched"]
 
 # columns of `node`
-DEGREE, PLACE, SHIFT, NEXT, SIGN, UNITS, FAILS = 0, 1, 2, 3, 4, 5, 6
+DEGREE, PLACE, SHIFT, NEXT, SIGN, UNITS, FAILS, GROUP = 0, 1, 2, 3, 4, 5, 6, 7
 # columns of `way`
 OTHER, BACK, KIND, LENGTH = 0, 1, 2, 3
 # columns of `angle` and `bearing`
@@ -54,7 +54,8 @@ class Quotient(NamedTuple):
     """The tree of a walk and a quotient in the making: N nodes, at most P places, K exits each, C kinds, S signatures."""
 
     node: NDArray[np.int64]
-    """(N, 7): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures."""
+    """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group of
+    nodes that must be one place, or -1."""
     way: NDArray[np.int64]
     """(N K, 4): other node, exit there, kind; microradians that its edge can turn."""
     angle: NDArray[np.float64]
@@ -81,6 +82,8 @@ class Quotient(NamedTuple):
     """(2,): largest closing miss of an edge, radians; most places."""
     trail: NDArray[np.int64]
     """(N,): nodes in the order placed."""
+    group: NDArray[np.int64]
+    """(G, 2): nodes placed of every group, and their place."""
     queue: NDArray[np.int64]
     """(Q, 3)."""
     stub: NDArray[np.int64]
@@ -166,6 +169,12 @@ def put(q, n, w, shift):  # type: ignore[no-untyped-def]
             if degree > 0 and not (q.alike[n, m] >> ((shift - q.node[m, 2]) % degree)) & 1:
                 return False
             m = q.node[m, 3]
+        g = q.node[n, 7]
+        if g >= 0:
+            if q.group[g, 0] > 0 and q.group[g, 1] != w:
+                return False
+            q.group[g, 0] += 1
+            q.group[g, 1] = w
         q.node[n, 1] = w
         q.node[n, 2] = shift
         q.node[n, 3] = q.place[w, 1]
@@ -209,6 +218,8 @@ def taken_back(q, mark):  # type: ignore[no-untyped-def]
                 q.kind[q.way[e, 2], 1] += 1
                 q.kind[q.way[m * width + q.way[e, 1], 2], 1] += 1
                 q.number[2] += q.way[e, 3]
+        if q.node[n, 7] >= 0:
+            q.group[q.node[n, 7], 0] -= 1
         q.place[q.node[n, 1], 1] = q.node[n, 3]
         q.node[n, 1] = -1
         q.sign[q.node[n, 4], 0] += q.node[n, 5]
@@ -614,4 +625,3 @@ def searched(q, control, frame, choice, best, out, stop):  # type: ignore[no-unt
     control[3] += made
     control[4] += found
     return found
-

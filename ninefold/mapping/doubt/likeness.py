@@ -38,21 +38,24 @@ class Likeness:
         Number of kinds.
     signature
         (N,) int64: nodes with the same kinds of exits have one.
+    group
+        (N,) int64: nodes that must be one place have one number; -1 for a node that need not be any other's place.
     """
 
     shifts: NDArray[np.int64]
     kind: NDArray[np.int64]
     n_kinds: int
     signature: NDArray[np.int64]
+    group: NDArray[np.int64]
 
 
-def likeness(tree: WalkTree, *, differ: Iterable[tuple[int, int]] = ()) -> Likeness:
+def likeness(tree: WalkTree, *, same: Iterable[tuple[int, int]] = (), differ: Iterable[tuple[int, int]] = ()) -> Likeness:
     """Compare all nodes of a tree.
 
     Parameters
     ----------
-    differ
-        Pairs of nodes known to be different places, beside those whose names differ.
+    same, differ
+        Pairs of nodes known to be one place, and different places, beside those whose names say so.
 
     Notes
     -----
@@ -74,7 +77,23 @@ def likeness(tree: WalkTree, *, differ: Iterable[tuple[int, int]] = ()) -> Liken
     keys = [tuple(sorted(kind[n, : tree.degree[n]].tolist())) for n in range(tree.n_nodes)]
     number: dict[tuple[int, ...], int] = {}
     signature = np.array([number.setdefault(key, len(number)) for key in keys], np.int64)
-    return Likeness(shifts, kind, n_kinds, signature)
+    pairs = [*same, *((group[0], n) for group in groups for n in group[1:])]
+    return Likeness(shifts, kind, n_kinds, signature, _groups(tree.n_nodes, pairs))
+
+
+def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:
+    """Number the sets of nodes that a chain of pairs makes one place; -1 for nodes in no pair."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    group = np.full(count, -1, np.int64)
+    if not same:
+        return group
+    a, b = np.array(same, np.int64).T
+    _, label = connected_components(coo_array((np.ones(a.size, np.int8), (a, b)), shape=(count, count)), directed=False)
+    paired = np.unique(np.concatenate([a, b]))
+    _, group[paired] = np.unique(label[paired], return_inverse=True)
+    return group
 
 
 def _shifts(tree: WalkTree) -> NDArray[np.int64]:

@@ -117,19 +117,18 @@ class QuotientSearch:
         return out[:found]
 
 
-def _quotient(
-    tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, most_places: int | None
-) -> kernels.Quotient:
+def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, most_places: int | None) -> kernels.Quotient:
     """Lay out the state of a search."""
     count, width = tree.heading.shape
     places = count + 1
     walked = tree.other >= 0
-    node = np.zeros((count, 7), np.int64)
+    node = np.zeros((count, 8), np.int64)
     node[:, kernels.DEGREE] = tree.degree
     node[:, kernels.PLACE] = -1
     node[:, kernels.NEXT] = -1
     node[:, kernels.SIGN] = alike.signature
     node[:, kernels.UNITS] = (walked.sum(axis=1) + 1) // 2
+    node[:, kernels.GROUP] = alike.group
     way = np.zeros((count * width, 4), np.int64)
     way[:, kernels.OTHER] = tree.other.reshape(-1)
     way[:, kernels.BACK] = tree.back.reshape(-1)
@@ -163,6 +162,7 @@ def _quotient(
         number,
         limit,
         np.zeros(count, np.int64),
+        np.zeros((int(alike.group.max(initial=-1)) + 1, 2), np.int64),
         np.zeros((8 * count + 16, 3), np.int64),
         np.zeros(places * width + 2, np.int64),
         np.zeros(places * width + 2),
@@ -198,9 +198,7 @@ def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:
     return slack
 
 
-def _signatures(
-    tree: WalkTree, alike: Likeness, node: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _signatures(tree: WalkTree, alike: Likeness, node: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return what nodes of each signature have in common, and the largest reflex turn of such a place."""
     width = tree.heading.shape[1]
     count = int(alike.signature.max()) + 1
@@ -219,9 +217,7 @@ def _signatures(
     return sign, bend
 
 
-def _sides(
-    tree: WalkTree, alike: Likeness, sign: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _sides(tree: WalkTree, alike: Likeness, sign: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Colour the kinds of exits with two sides so that every way joins the two, where that can be done.
 
     Returns the table of kinds and, per signature and component, how many exits of one side its places have beyond the other.

@@ -308,4 +308,3 @@ def _tree(
         tree.tolerance,
         wrong,
     )
-
