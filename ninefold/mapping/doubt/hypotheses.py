@@ -1,8 +1,8 @@
 """Every plane map that explains a walk through places that look alike.
 
 A hypothesis is a quotient of the walk's visits: same places merged, each exit used by one way, congruent along the exits
-walked. It is legal when every face of the walked part turns +1 and exactly one -1, as `PlaneMap` demands. It is closed when no
-exit is left untravelled. See `walk_tree` for how a walk is folded, and `quotients` for the search.
+walked. It is legal when every face of the walked part turns +1 and exactly one -1, as `PlaneMap` demands. It is closed when
+no exit is left untravelled. See `walk_tree` for how a walk is folded, and `quotients` for the search.
 """
 
 from __future__ import annotations

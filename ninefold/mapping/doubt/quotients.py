@@ -11,7 +11,7 @@ demand, the turning budget). Which node the search begins with changes nothing i
 
 References
 ----------
-F. Savelli and B. Kuipers, Loop-closing and planarity in topological map-building, IROS 2004: planarity in the tree of all maps.
+F. Savelli and B. Kuipers, Loop-closing and planarity in topological map-building, IROS 2004.
 """
 
 from __future__ import annotations
@@ -50,13 +50,6 @@ class QuotientSearch:
         False judges genus alone; for tests.
     most_places
         Places of a map at most, or None.
-
-    Attributes
-    ----------
-    decisions, found
-        How many were made, and how many quotients were found so far.
-    done
-        Whether the search has come to its end: then `found` is the number of quotients.
     """
 
     def __init__(
@@ -87,14 +80,17 @@ class QuotientSearch:
 
     @property
     def decisions(self) -> int:
+        """Decisions made so far."""
         return int(self._control[kernels.N_DECISIONS])
 
     @property
     def found(self) -> int:
+        """Quotients found so far."""
         return int(self._control[kernels.N_FOUND])
 
     @property
     def done(self) -> bool:
+        """Whether the search has come to its end: then `found` is the number of quotients."""
         return bool(self._control[kernels.DONE])
 
     @property
