@@ -182,15 +182,15 @@ def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:
             n, m = np.nonzero((bits >> k) & 1)
             off = np.roll(yaw, -k, axis=1)[m] - yaw[n]
             off -= TAU * np.round(off / TAU)
-            for x in range(degree):
-                np.minimum.at(low, (nodes[n], x), off[:, x])
-                np.maximum.at(high, (nodes[n], x), off[:, x])
-    n, x = np.nonzero(tree.other >= 0)
-    m, y = tree.other[n, x], tree.back[n, x]
-    miss = tree.heading[m, y] + np.pi - tree.heading[n, x] - tree.turn[n, x]
+            for exit_ in range(degree):
+                np.minimum.at(low[:, exit_], nodes[n], off[:, exit_])
+                np.maximum.at(high[:, exit_], nodes[n], off[:, exit_])
+    here, x = np.nonzero(tree.other >= 0)
+    there, y = tree.other[here, x], tree.back[here, x]
+    miss = tree.heading[there, y] + np.pi - tree.heading[here, x] - tree.turn[here, x]
     miss -= TAU * np.round(miss / TAU)
     slack = np.zeros(tree.heading.shape)
-    slack[n, x] = np.maximum(np.abs(miss + high[m, y] - low[n, x]), np.abs(miss + low[m, y] - high[n, x]))
+    slack[here, x] = np.maximum(np.abs(miss + high[there, y] - low[here, x]), np.abs(miss + low[there, y] - high[here, x]))
     return slack
 
 
