@@ -175,14 +175,16 @@ class TooLarge(NinefoldError, MemoryError):
 
 
 class Undecided(NinefoldError, RuntimeError):
-    """Scenarios or a repair were asked for, and whether the network is consistent is not known.
+    """One answer was asked for, and it is not known which.
 
-    ``check`` answers `Unknown` there; an iterator of scenarios has no such answer to give.
+    Scenarios or a repair of a network of which it is not known whether it is consistent: ``check`` answers `Unknown` there,
+    an iterator of scenarios has no such answer to give. The map of an estimate that leaves several.
 
     Attributes
     ----------
     kind
-        ``"time"`` where a budget was spent, ``"theory"`` where nobody has shown how to decide the calculus.
+        ``"time"`` where a budget was spent, ``"theory"`` where nobody has shown how to decide the calculus, ``"map"`` where
+        more than one map is left, or none.
     """
 
     def __init__(self, message: str, *, kind: str) -> None:

@@ -146,6 +146,7 @@ def info(
 ) -> int:
     """Show what an atlas holds: the size of its map, what was checked, the named sets, and where it all came from."""
     from ninefold.io import Atlas
+    from ninefold.mapping import health
 
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
@@ -160,6 +161,7 @@ def info(
             "origin": found.origin,
             "events": found.n_events,
             "checks": _checks(plane),
+            "health": None if plane.heading is None else health(plane).counts,
             "fixed": None,
             "names": found.kinds,
             "statements": len(found.statements),
@@ -278,6 +280,8 @@ def _fixed_in_words(counts: dict[str, int]) -> str:
 
 
 def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
+    from ninefold.mapping import health
+
     outer = facts["outer_edges"]
     print(f"{facts['file']}: {_described(plane)}")
     print(
@@ -288,16 +292,10 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     print(f"dead ends    {facts['dead_ends']}")
     if "measured_lengths" in facts:
         print(f"lengths      measured along {facts['measured_lengths']} of {counted(facts['edges'], 'edge')}")
-    checks = facts["checks"]
-    turning = (
-        "no headings"
-        if checks["turning"] is None
-        else (
-            f"every face turns once; headings and turns agree within {checks['largest_residual']:.2g} rad "
-            f"(worst: {checks['worst_edge']})"
-        )
-    )
+    turning = "no headings" if facts["checks"]["turning"] is None else "every face turns once"
     print(f"checks       V - E + F is right; {turning}")
+    if plane.heading is not None:
+        print(f"health       {health(plane)}")
     if facts["fixed"] is not None:
         print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
     events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""

@@ -70,7 +70,8 @@ def follow_walk(out: Path, tolerance: float | None, *, resume: bool, force: bool
             note(f"interrupted; {_kept(feed)}")
             raise
         except BadInput as error:
-            raise BadInput(f"{error}; {_kept(feed)}") from None
+            doubted = [] if error.event is None else doubts(feed.finish())
+            raise BadInput("; ".join([str(error), *doubted, _kept(feed)])) from None
     return Atlas.open(out, writable=False), doubts(walk)
 
 

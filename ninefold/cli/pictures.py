@@ -49,6 +49,12 @@ def draw(
             help="Colour the legs by what the headings fix: measured shapes, evened-out lengths, headings that do not fit.",
         ),
     ] = False,
+    health: Annotated[
+        bool,
+        typer.Option(
+            "--health", help="Colour the legs by how far their headings and turn disagree, with a scale in degrees."
+        ),
+    ] = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
@@ -61,22 +67,28 @@ def draw(
         raise BadInput(f"{shown(out)}: pictures are SVG; name a file that ends in .svg")
     if curved and layout not in ("auto", "compass"):
         raise BadInput(f"--curved is for --layout compass, which follows the headings, not for {quoted(layout)}")
+    if rigidity and health:
+        raise BadInput("--rigidity and --health both colour the legs; give one of them")
     refuse_existing(out, force=force)
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
         sets = {text: found.parse(text) for text in highlight or []}
     with progress("drawing"):
         from ninefold import layout as layouts
+        from ninefold import mapping
 
         measured = layouts.rigidity(plane) if rigidity else None
+        closing = mapping.health(plane) if health else None
         drawing = layouts.compass(plane, curved=True) if curved else layouts.draw(plane, layout=layout)
         heading = title if title is not None else atlas.stem
-        svg = drawing.to_svg(highlight=sets or None, title=heading, theme=theme, rigidity=measured or False)
+        svg = drawing.to_svg(
+            highlight=sets or None, title=heading, theme=theme, rigidity=measured or False, health=closing or False
+        )
         write_text(out, svg, force=force)
     said = (*drawing.notes, *(measured.warnings if measured else ()))
     notes(said)
     if as_json:
-        facts = {"fixed": measured.counts} if measured else {}
+        facts = {"fixed": measured.counts} if measured else {"health": closing.counts} if closing else {}
         print_json({"file": str(out), "layout": drawing.layout, "notes": list(said), **facts})
     else:
         print(f"{out}: {plane!r} in the {drawing.layout} layout")

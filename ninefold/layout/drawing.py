@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import PlaneMap, Set
+    from ninefold.mapping import Health, PlaneMap, Set
 
     from .bearing_rigidity import Rigidity
 
@@ -208,6 +208,7 @@ class Drawing(Immutable):
         theme: str = "auto",
         width: int = 800,
         rigidity: bool | Rigidity = False,
+        health: bool | Health = False,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -227,16 +228,28 @@ class Drawing(Immutable):
         rigidity
             Colour the edges by what the headings fix: parts whose shape is measured, lengths that are only evened out, and
             legs that the rest contradicts. True works it out; what `ninefold.layout.rigidity` returned saves that.
+        health
+            Colour the edges by how far their headings and turn disagree, in degrees, on one scale for all maps. True, or
+            what `ninefold.mapping.health` returned; not together with `rigidity`.
 
         Raises
         ------
         BadInput, DifferentMaps
             For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
-            `rigidity` for a map without headings.
+            `rigidity` or `health` for a map without headings.
         """
         from .svg import render
 
-        return render(self, highlight=highlight, title=title, labels=labels, theme=theme, width=width, rigidity=rigidity)
+        return render(
+            self,
+            highlight=highlight,
+            title=title,
+            labels=labels,
+            theme=theme,
+            width=width,
+            rigidity=rigidity,
+            health=health,
+        )
 
     def save(self, path: str | Path, **options: Any) -> None:
         """Write the drawing as an SVG file, whole or not at all; a file that is there is replaced. Options as for `to_svg`.
@@ -253,6 +266,7 @@ class Drawing(Immutable):
         *,
         highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
         rigidity: bool | Rigidity = False,
+        health: bool | Health = False,
         axes: Any = None,
     ) -> Any:
         """Draw on matplotlib axes and return them; see `ninefold.layout.plot`.
@@ -264,7 +278,7 @@ class Drawing(Immutable):
         """
         from .plot import plot
 
-        return plot(self, highlight=highlight, rigidity=rigidity, axes=axes)
+        return plot(self, highlight=highlight, rigidity=rigidity, health=health, axes=axes)
 
     def _repr_svg_(self) -> str:
         return self.to_svg(width=560)

@@ -8,7 +8,8 @@ contradicted is of that class alone.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,9 +20,11 @@ from .bearing_rigidity import Rigidity, rigidity
 from .theme import FIXED
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ninefold.mapping import PlaneMap
 
-__all__ = ["LegClass", "caption_of", "leg_classes", "leg_tip", "rigidity_of"]
+__all__ = ["LegClass", "LegColouring", "caption_of", "leg_classes", "leg_tip", "rigidity_colouring", "rigidity_of"]
 
 _OWN_COLOUR = len(FIXED["light"]) - 1
 """Parts with a colour of their own; the last colour is for all others."""
@@ -36,7 +39,8 @@ class LegClass:
     Attributes
     ----------
     name
-        ``"fixed0"`` and so on, ``"evened"`` or ``"contradicted"``: also the class of the style sheet.
+        ``"fixed0"`` and so on, ``"evened"`` or ``"contradicted"``; by health ``"closing0"`` and so on. Also the class of the
+        style sheet.
     edges
         Their numbers, rising.
     words
@@ -46,6 +50,33 @@ class LegClass:
     name: str
     edges: tuple[int, ...]
     words: str
+
+
+@dataclass(frozen=True, slots=True)
+class LegColouring:
+    """How the legs of a map look, and why.
+
+    Attributes
+    ----------
+    told
+        What the colours tell: ``"rigidity"``, what the headings fix, or ``"health"``, how well they agree.
+    classes
+        Those that have legs, in the order in which they are drawn.
+    tip
+        What the tool tip of a leg says after its name, given its class and its number.
+    caption
+        What stands below the picture.
+    """
+
+    told: Literal["rigidity", "health"]
+    classes: tuple[LegClass, ...]
+    tip: Callable[[LegClass, int], str]
+    caption: str
+
+
+def rigidity_colouring(found: Rigidity, layout: str) -> LegColouring:
+    """Return how a drawing in a layout shows what the headings fix."""
+    return LegColouring("rigidity", leg_classes(found), partial(leg_tip, found), caption_of(found, layout))
 
 
 def rigidity_of(plane: PlaneMap, given: object) -> Rigidity | None:

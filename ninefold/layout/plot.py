@@ -9,15 +9,14 @@ import numpy as np
 from ninefold.errors import MissingExtra
 from ninefold.mapping import Line, Point, Region
 
-from .leg_classes import leg_classes, rigidity_of
 from .shapes import region_rings
-from .svg import LABELS_UP_TO, named_sets
-from .theme import CONTRADICTED, EVENED, FIXED, LIGHT, ROLES
+from .svg import LABELS_UP_TO, leg_colouring, named_sets
+from .theme import CLOSING, CONTRADICTED, EVENED, FIXED, LIGHT, ROLES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ninefold.mapping import Set
+    from ninefold.mapping import Health, Set
 
     from .bearing_rigidity import Rigidity
     from .drawing import Drawing
@@ -30,13 +29,14 @@ def plot(
     *,
     highlight: Mapping[str, Set] | Iterable[Set] | Set | None = None,
     rigidity: bool | Rigidity = False,
+    health: bool | Health = False,
     axes: Any = None,
 ) -> Any:
     """Draw on matplotlib axes, in map coordinates, and return them.
 
     Parameters
     ----------
-    highlight, rigidity
+    highlight, rigidity, health
         As for `Drawing.to_svg`.
     axes
         Axes to draw on; a new figure if left out.
@@ -55,14 +55,14 @@ def plot(
         raise MissingExtra("plotting on matplotlib axes", "plot") from None
     plane = drawing.plane
     sets = named_sets(drawing, highlight)
-    found = rigidity_of(plane, rigidity)
-    classes = () if found is None else leg_classes(found)
+    colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
+    classes = () if colouring is None else colouring.classes
     if axes is None:
         axes = Figure(figsize=(7, 6), layout="constrained").add_subplot()
     for kind in classes:
         lines = [drawing.path(e) for e in kind.edges]
         axes.add_collection(LineCollection(lines, label=kind.words, zorder=2, **_look(kind.name)))
-    if found is None:
+    if colouring is None:
         real = np.flatnonzero(~plane.tether).tolist()
         axes.add_collection(LineCollection([drawing.path(e) for e in real], colors=LIGHT["edge"], linewidths=1.0, zorder=2))
     for k, (label, x) in enumerate(sets):
@@ -96,5 +96,8 @@ def _look(name: str) -> dict[str, Any]:
             return {"colors": EVENED["light"], "linewidths": 1.0, "linestyles": "dashed"}
         case "contradicted":
             return {"colors": CONTRADICTED["light"], "linewidths": 3.5}
+        case _ if name.startswith("closing"):
+            k = int(name.removeprefix("closing"))
+            return {"colors": CLOSING["light"][k], "linewidths": 1.2 + 0.3 * k}
         case _:
             return {"colors": FIXED["light"][int(name.removeprefix("fixed"))], "linewidths": 1.8}

@@ -6,7 +6,8 @@ points as dots. Names appear on small maps only; edges and vertices carry tool t
 triangle; the picture shears it to an equilateral one, which keeps straight lines, sides and crossings as they are.
 
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
-the rest contradicts broad and on top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
+the rest contradicts broad and on top; or by how well headings and turns agree (`health_scale`), the worst broadest and on
+top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
+from .health_scale import health_colouring, health_of, health_scale
 from .labels import place_labels, text_width
-from .leg_classes import caption_of, leg_classes, leg_tip, rigidity_of
+from .leg_classes import rigidity_colouring, rigidity_of
 from .shapes import region_rings
 from .theme import ROLES, THEMES, style_sheet
 
@@ -32,13 +34,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ninefold.mapping import Set
+    from ninefold.mapping import Health, Set
 
     from .bearing_rigidity import Rigidity
     from .drawing import Drawing
-    from .leg_classes import LegClass
+    from .leg_classes import LegColouring
 
-__all__ = ["named_sets", "render"]
+__all__ = ["leg_colouring", "named_sets", "render"]
 
 LABELS_UP_TO = 40
 """Vertices up to which names are shown unless asked otherwise."""
@@ -63,6 +65,7 @@ def render(
     theme: str = "auto",
     width: int = 800,
     rigidity: bool | Rigidity = False,
+    health: bool | Health = False,
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -70,34 +73,49 @@ def render(
     if not 100 <= width <= 20_000:
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
-    found = rigidity_of(drawing.plane, rigidity)
-    classes = () if found is None else leg_classes(found)
+    colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
     page = _Page(drawing, width, title)
-    if found is not None:
+    if colouring is not None:
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets), legs=found is not None),
+        _defs(theme, len(sets), legs="" if colouring is None else colouring.told),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
-        *(_edges(page) if found is None else []),
+        *(_edges(page) if colouring is None else []),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
-        *([] if found is None else _classed_edges(page, found, classes)),
+        *([] if colouring is None else _classed_edges(page, colouring)),
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
     ]
     if shown:
         body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
-    legend, height = _legend(page, sets, classes, found)
+    legend, height = _legend(page, sets, colouring)
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
     size = f'width="{width}" height="{height:.0f}" viewBox="0 0 {width} {height:.0f}"'
     root = f'xmlns="http://www.w3.org/2000/svg" class="ninefold-{theme}" {size} role="img" aria-label="{name}"'
     return f'<svg {root} font-family="{_FONT}">\n<title>{name}</title>\n{text}\n</svg>\n'
+
+
+def leg_colouring(drawing: Drawing, *, rigidity: bool | Rigidity, health: bool | Health) -> LegColouring | None:
+    """Return how the legs are coloured, None for all alike.
+
+    Raises
+    ------
+    BadInput, DifferentMaps
+        For both at once, a map without headings, what is of another map.
+    """
+    if rigidity and health:
+        raise BadInput("a leg has one colour: draw by rigidity or by health, not by both")
+    fixed, found = rigidity_of(drawing.plane, rigidity), health_of(drawing.plane, health)
+    if fixed is not None:
+        return rigidity_colouring(fixed, drawing.layout)
+    return None if found is None else health_colouring(found)
 
 
 def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | Set | None) -> list[tuple[str, Set]]:
@@ -176,7 +194,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int, *, legs: bool) -> str:
+def _defs(theme: str, used: int, *, legs: str) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -240,11 +258,11 @@ def _edges(page: _Page) -> list[str]:
     return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
 
 
-def _classed_edges(page: _Page, found: Rigidity, classes: tuple[LegClass, ...]) -> list[str]:
+def _classed_edges(page: _Page, colouring: LegColouring) -> list[str]:
     """Return the edges, a group for each class; beyond `TIPS_UP_TO` one path for each."""
     plane = page.drawing.plane
     parts = []
-    for kind in classes:
+    for kind in colouring.classes:
         shape = f'class="{kind.name}" fill="none" {_leg_look(kind.name, page.stroke)}'
         lines = [page.path(page.drawing.path(e)) for e in kind.edges]
         whole = "".join(lines)
@@ -255,7 +273,7 @@ def _classed_edges(page: _Page, found: Rigidity, classes: tuple[LegClass, ...]) 
             parts.append(f'<path {shape} d="{whole}"/>')
             continue
         tips = (
-            f'<path d="{d}"><title>{_escaped(f"{plane.edge_names[e]}: {leg_tip(found, kind, e)}")}</title></path>'
+            f'<path d="{d}"><title>{_escaped(f"{plane.edge_names[e]}: {colouring.tip(kind, e)}")}</title></path>'
             for e, d in zip(kind.edges, lines, strict=True)
         )
         parts.append(f"<g {shape}>{''.join(tips)}</g>")
@@ -263,6 +281,8 @@ def _classed_edges(page: _Page, found: Rigidity, classes: tuple[LegClass, ...]) 
 
 
 def _leg_width(name: str, stroke: float) -> float:
+    if name.startswith("closing"):
+        return max(1.2, 1.3 * stroke) * (1 + 0.2 * int(name.removeprefix("closing")))
     return stroke if name == "evened" else max(4.0, 3 * stroke) if name == "contradicted" else max(1.4, 1.5 * stroke)
 
 
@@ -317,15 +337,14 @@ def _names(page: _Page, marked: set[int]) -> list[str]:
     return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
 
 
-def _legend(
-    page: _Page, sets: list[tuple[str, Set]], classes: tuple[LegClass, ...], found: Rigidity | None
-) -> tuple[list[str], float]:
+def _legend(page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | None) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
     entries: list[tuple[Callable[[float, float], str], str]] = [
         (partial(_swatch, k, s), f"{name}: {_kind(s)}") for k, (name, s) in enumerate(sets)
     ]
-    entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in classes]
+    if colouring is not None and colouring.told == "rigidity":
+        entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
@@ -335,10 +354,13 @@ def _legend(
         x += wide
     if entries:
         y += 26
+    if colouring is not None and colouring.told == "health":
+        parts += health_scale(_PAD, y, page.width - 2 * _PAD, colouring)
+        y += 70
     layout = page.drawing.layout
     caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
-    if found is not None:
-        caption.append(caption_of(found, layout))
+    if colouring is not None:
+        caption.append(colouring.caption)
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16

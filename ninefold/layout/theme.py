@@ -8,6 +8,9 @@ What the headings of a map fix has colours of its own, `FIXED`, so that sets can
 parts and one for all others, `EVENED` for legs that nothing measures, and `CONTRADICTED`, a red, for those that the rest
 contradicts. They too stay apart for readers with any of the common deficiencies; the tests hold it by simulation.
 
+The health of legs has a scale of its own, `CLOSING`: evenly spaced in lightness, so that its order is seen without the
+hues and stays in a print in grey; on light ground the worst is darkest, on dark ground brightest.
+
 References
 ----------
 M. Okabe and K. Ito, Color Universal Design, 2008.
@@ -15,7 +18,7 @@ M. Okabe and K. Ito, Color Universal Design, 2008.
 
 from __future__ import annotations
 
-__all__ = ["CONTRADICTED", "DARK", "EVENED", "FIXED", "LIGHT", "ROLES", "THEMES", "style_sheet"]
+__all__ = ["CLOSING", "CONTRADICTED", "DARK", "EVENED", "FIXED", "LIGHT", "ROLES", "THEMES", "style_sheet"]
 
 THEMES = ("auto", "light", "dark")
 
@@ -26,11 +29,16 @@ FIXED = {"light": ("#1450C4", "#2E9E63", "#7A1E6A", "#CA8411"), "dark": ("#5498F
 EVENED = {"light": "#8C9199", "dark": "#7C848E"}
 CONTRADICTED = {"light": "#B5150F", "dark": "#F2603A"}
 
+CLOSING = {
+    "light": ("#70C1BF", "#4CA9D0", "#588DD4", "#8369C1", "#A43B8E", "#A4064D", "#850821", "#601215"),
+    "dark": ("#157376", "#0383AE", "#6F89D7", "#BA8CE2", "#FB8DD5", "#FEB1B8", "#FED0B3", "#FFEDB0"),
+}
+
 LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E2227", "faint": "#6B6F76"}
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str | None) -> str:
+def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, mode: str) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -44,23 +52,26 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str |
     ]
     for k, colour in enumerate(roles):
         rules += [f".f{k}{{fill:{colour}}}", f".s{k}{{stroke:{colour}}}"]
-    if legs is not None:
-        rules += [f".fixed{k}{{stroke:{colour}}}" for k, colour in enumerate(FIXED[legs])]
-        rules += [f".evened{{stroke:{EVENED[legs]}}}", f".contradicted{{stroke:{CONTRADICTED[legs]}}}"]
+    if legs == "rigidity":
+        rules += [f".fixed{k}{{stroke:{colour}}}" for k, colour in enumerate(FIXED[mode])]
+        rules += [f".evened{{stroke:{EVENED[mode]}}}", f".contradicted{{stroke:{CONTRADICTED[mode]}}}"]
+    elif legs == "health":
+        rules += [f".closing{k}{{stroke:{colour}}}" for k, colour in enumerate(CLOSING[mode])]
     return "".join(f"{scope} {rule}" for rule in rules)
 
 
-def style_sheet(theme: str, used: int, *, legs: bool = False) -> str:
+def style_sheet(theme: str, used: int, *, legs: str = "") -> str:
     """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
 
-    With `legs` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``, ``contradicted``.
+    With ``legs="rigidity"`` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``,
+    ``contradicted``; with ``legs="health"`` for closing residuals: ``closing0`` to ``closing7``.
 
     The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
     the whole page.
     """
     scope = f".ninefold-{theme}"
-    light = _rules(scope, LIGHT, ROLES[:used], "light" if legs else None)
-    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], "dark" if legs else None)
+    light = _rules(scope, LIGHT, ROLES[:used], legs, "light")
+    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], legs, "dark")
     match theme:
         case "light":
             return light

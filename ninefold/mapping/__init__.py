@@ -8,6 +8,8 @@ counter-clockwise and a face lies on the left of its darts.
 whole map or raise. How a robot builds one, event by event, is a room of its own, `ninefold.mapping.robot`: a `Mapper` grows
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
+**Its health** is how well headings and turns agree, edge by edge: `health`.
+
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
 and `Face` are types for the numbers that index the arrays of a map.
 
@@ -22,6 +24,7 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .closing import Health, health
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .graphs import bridges, cut_vertices, shortest_path
@@ -46,6 +49,7 @@ __all__ = [
     "Exploration",
     "Face",
     "Heading",
+    "Health",
     "Line",
     "Mapper",
     "Names",
@@ -65,6 +69,7 @@ __all__ = [
     "cut_vertices",
     "estimate",
     "explore",
+    "health",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -75,6 +80,7 @@ __getattr__, __dir__ = attach(
     {
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
+        "closing": ("Health", "health"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

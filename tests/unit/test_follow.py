@@ -271,6 +271,20 @@ def test_a_bad_line_ends_it_and_says_what_is_kept(run, tmp_path):
     assert "a.atlas after 5 events; its end" in err
 
 
+def test_a_doubtful_header_is_named_with_the_line_that_does_not_fit(run, tmp_path):
+    yard = [HEADER.replace(b"bearing-deg", b"yaw-rad"), *YARD[1:]]
+    code, _, err = run("map", "-", "--follow", "-o", tmp_path / "a.atlas", given=b"".join(yard))
+    doubt = "headings reach {} and the header says yaw-rad; if they are degrees, write yaw-deg or bearing-deg there"
+    assert (code, err.splitlines()[-1]) == (0, f"ninefold: {doubt.format(90)}")
+    yard += [b'{"heading": 180}\n', b'{"place": "well", "exits": [1]}\n']
+    code, _, err = run("map", "-", "--follow", "-o", tmp_path / "b.atlas", given=b"".join(yard))
+    assert code == 2
+    last = err.splitlines()[-1]
+    assert last.startswith("ninefold: standard input, line 8: ")
+    assert f"; {doubt.format(180)}; " in last
+    assert last.endswith("b.atlas keeps the 6 events before, and --resume goes on from there")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -26,18 +26,20 @@ LOG_ODDS = -log(CHANCE)
 
 
 @cache
-def threshold(free: int) -> float:
-    """Return the half squared miss that the truth exceeds with the chance `CHANCE`, fitted or not.
+def threshold(free: int, chance: float = CHANCE) -> float:
+    """Return the half squared miss that the truth exceeds with a chance, fitted or not.
 
     Parameters
     ----------
     free
         Number of independent errors in the sum, at least 1. For one the threshold for two is returned: the promise is made
         with ln 1e9.
+    chance
+        The chance, 1e-9 if left out.
     """
     from scipy.special import gammainccinv
 
-    return max(LOG_ODDS, float(gammainccinv(free / 2, CHANCE)))
+    return max(-log(chance), float(gammainccinv(free / 2, chance)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from ninefold._wording import counted, quoted
 
 from .doubts import Doubt, doubts_of
 from .exit_lists import averaged, biases
-from .noise import CHANCE
+from .noise import CHANCE, threshold
 from .orders import star_orders
 from .reading import settled_reading
 from .ways import bundles, partings, way_of
@@ -36,6 +36,10 @@ MOST_READINGS = 64
 
 SURE = 6.5
 """Standard deviations that noise does not reach: a rotation between two samples that much short of half a turn is sure."""
+
+
+ODD = 1e-4
+"""Chance of a scatter among the legs of one way that makes two ways worth a reading, where no exits are listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,9 +172,11 @@ class _Gathering:
             spare = room[bundle.tail] // 2
         else:
             spare = min(room[bundle.tail], room[bundle.head])
-        if np.isinf(spare):  # nothing is listed: one way, unless the legs scatter or are named otherwise
+        if np.isinf(spare):  # nothing is listed: one way, unless the legs scatter oddly or are named otherwise
             names = {name for leg in bundle.legs.tolist() if (name := self.evidence.edges[leg]) is not None}
-            return max(len(names) - 1, 0)
+            free = 2 * (len(bundle.legs) - 1)
+            odd = free and bundle.scatter(self.variance + self.floor) > threshold(free, ODD)
+            return max(len(names) - 1, 1 if odd else 0)
         return int(spare)
 
     def _fit_exits(self, parts: tuple[Bundle, ...]) -> bool:
