@@ -25,6 +25,7 @@ from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences, tells_metres
 from ._file import AtlasFile, put, text_that_can_be_written
 from ._map_rows import store_map
+from .guess import Guess
 from .records import Provenance, Statement
 
 if TYPE_CHECKING:
@@ -147,6 +148,7 @@ class Atlas:
         *,
         provenance: Provenance | None = None,
         warnings: Iterable[str] = (),
+        guess: Guess | None = None,
         force: bool = False,
     ) -> Self:
         """Make an atlas of a finished map, without a walk, and open it.
@@ -155,6 +157,9 @@ class Atlas:
         ----------
         warnings
             Sentences to keep with it, such as `Source.notes`.
+        guess
+            What is in doubt about the map, if it is the likeliest of several: `Guess.of` an estimate. Its warnings are kept
+            before the others.
 
         Raises
         ------
@@ -163,7 +168,10 @@ class Atlas:
         """
 
         def fill(connection: sqlite3.Connection) -> None:
-            put(connection, origin="map", header=header_text(WalkHeader()), map_events=0, warnings=sentences(warnings))
+            said = (*(guess.warnings if guess else ()), *warnings)
+            put(connection, origin="map", header=header_text(WalkHeader()), map_events=0, warnings=sentences(said))
+            if guess is not None:
+                put(connection, guess=guess.to_json())
             store_map(connection, plane)
             _put_provenance(connection, provenance)
 
@@ -281,6 +289,13 @@ class Atlas:
     def warnings(self) -> tuple[str, ...]:
         """What was left out or is unfinished: notes of the source, exits never travelled, a leg without end."""
         return self._log.warnings
+
+    @property
+    def guess(self) -> Guess | None:
+        """What is in doubt about the map, if it was kept as the likeliest of several; else None."""
+        rows = self._file.rows("SELECT value FROM meta WHERE key = 'guess'")
+        with self._file.damage():
+            return Guess.from_json(rows[0][0]) if rows else None
 
     # -- named sets ------------------------------------------------------------------------------------------------------
 
