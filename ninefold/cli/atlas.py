@@ -131,7 +131,9 @@ def _declared_noise(
     """Return --sigma and --drift in radians."""
     from ninefold.errors import BadInput
 
-    given = [name for name, on in (("--sigma", sigma), ("--drift", drift), ("--best", best)) if on is not None and on is not False]
+    given = [
+        name for name, on in (("--sigma", sigma), ("--drift", drift), ("--best", best)) if on is not None and on is not False
+    ]
     if given and kind != "walk":
         raise BadInput(f"{given[0]} is for walks; geometry has no headings that err")
     if given and exact:

@@ -111,7 +111,8 @@ def _number(found: Estimate) -> str:
 def _scatter(found: Estimate) -> str:
     if found.scatter is None:
         return ""
-    return f"; declared to err by {degrees(found.noise.sigma):.3g} degrees, headings seem to by {degrees(found.scatter):.2g}"
+    declared, seen = degrees(found.noise.sigma), degrees(found.scatter)
+    return f"; headings seem to err by {round(seen, 3):.2g} degrees, declared are {declared:.3g}"
 
 
 def _told(found: Estimate) -> list[str]:

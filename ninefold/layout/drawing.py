@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import Health, PlaneMap, Set
+    from ninefold.mapping import Doubt, Health, PlaneMap, Set
 
     from .bearing_rigidity import Rigidity
 
@@ -209,6 +209,7 @@ class Drawing(Immutable):
         width: int = 800,
         rigidity: bool | Rigidity = False,
         health: bool | Health = False,
+        doubts: Iterable[Doubt] = (),
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -231,12 +232,17 @@ class Drawing(Immutable):
         health
             Colour the edges by how far their headings and turn disagree, in degrees, on one scale for all maps. True, or
             what `ninefold.mapping.health` returned; not together with `rigidity`.
+        doubts
+            Of an estimate whose likeliest map this is: the places where something is undecided get numbered rings, and the
+            sentences stand below.
 
         Raises
         ------
         BadInput, DifferentMaps
             For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
             `rigidity` or `health` for a map without headings.
+        UnknownName
+            For doubts about a place that the map does not have.
         """
         from .svg import render
 
@@ -249,6 +255,7 @@ class Drawing(Immutable):
             width=width,
             rigidity=rigidity,
             health=health,
+            doubts=doubts,
         )
 
     def save(self, path: str | Path, **options: Any) -> None:

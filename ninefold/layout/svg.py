@@ -8,6 +8,8 @@ triangle; the picture shears it to an equilateral one, which keeps straight line
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
 the rest contradicts broad and on top; or by how well headings and turns agree (`health_scale`), the worst broadest and on
 top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
+
+What is undecided about a map that was estimated is marked where it is and said below (`doubt_marks`).
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
+from .doubt_marks import DoubtMark, doubt_marks, doubt_sentences, doubt_words, ring
 from .health_scale import health_colouring, health_of, health_scale
 from .labels import place_labels, text_width
 from .leg_classes import rigidity_colouring, rigidity_of
@@ -34,7 +37,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ninefold.mapping import Health, Set
+    from ninefold.mapping import Doubt, Health, Set
 
     from .bearing_rigidity import Rigidity
     from .drawing import Drawing
@@ -66,6 +69,7 @@ def render(
     width: int = 800,
     rigidity: bool | Rigidity = False,
     health: bool | Health = False,
+    doubts: Iterable[Doubt] = (),
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -74,6 +78,8 @@ def render(
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
     colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
+    said = tuple(doubts)
+    marks = doubt_marks(drawing.plane, said)
     page = _Page(drawing, width, title)
     if colouring is not None:
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
@@ -90,10 +96,11 @@ def render(
         *([] if colouring is None else _classed_edges(page, colouring)),
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
+        *_doubted(page, marks),
     ]
     if shown:
         body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
-    legend, height = _legend(page, sets, colouring)
+    legend, height = _legend(page, sets, colouring, marks, doubt_sentences(said))
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -315,6 +322,21 @@ def _point(page: _Page, k: int, x: Point) -> list[str]:
     ]
 
 
+def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
+    """Return a numbered ring for every place where something is undecided."""
+    at = page.place(page.drawing.points).tolist()
+    radius = max(7.0, page.dot + 3.0)
+    rings, numbers = [], []
+    for mark in marks:
+        x, y = at[mark.vertex]
+        number = ",".join(map(str, mark.numbers))
+        tip = _escaped("; ".join(mark.words))
+        rings.append(f"<g><title>{tip}</title>{ring(mark.kind, x, y, radius)}</g>")
+        numbers.append(f'<text x="{x + radius + 1:.1f}" y="{y - radius + 2:.1f}">{number}</text>')
+    look = 'font-size="11.5" font-weight="600" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    return [*rings, f'<g class="name" {look}>{"".join(numbers)}</g>'] if marks else []
+
+
 def _names(page: _Page, marked: set[int]) -> list[str]:
     plane = page.drawing.plane
     pieces, _ = page.drawing.pieces
@@ -337,7 +359,13 @@ def _names(page: _Page, marked: set[int]) -> list[str]:
     return [*parts, f'<g class="name" font-size="{size:g}" {look}>{texts}</g>']
 
 
-def _legend(page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | None) -> tuple[list[str], float]:
+def _legend(
+    page: _Page,
+    sets: list[tuple[str, Set]],
+    colouring: LegColouring | None,
+    marks: tuple[DoubtMark, ...],
+    doubted: list[str],
+) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
     entries: list[tuple[Callable[[float, float], str], str]] = [
@@ -345,6 +373,7 @@ def _legend(page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | 
     ]
     if colouring is not None and colouring.told == "rigidity":
         entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
+    entries += [(partial(_ring_swatch, kind), words) for kind, words in doubt_words(marks)]
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
@@ -364,7 +393,15 @@ def _legend(page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | 
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
+    for sentence in doubted:
+        for line in _wrapped(sentence, (page.width - 2 * _PAD) / (12 * 0.58)):
+            parts.append(f'<text class="ink" x="{_PAD:g}" y="{y + 6:.1f}" font-size="12">{_escaped(line)}</text>')
+            y += 16
     return parts, y + 6
+
+
+def _ring_swatch(kind: str, x: float, y: float) -> str:
+    return ring(kind, x + 11, y, 7.0)
 
 
 def _leg_swatch(name: str, x: float, y: float) -> str:

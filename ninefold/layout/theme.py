@@ -49,6 +49,7 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, 
         f".faint{{fill:{base['faint']}}}",
         f".name{{fill:{base['ink']};stroke:{base['paper']}}}",
         f".leader{{stroke:{base['faint']}}}",
+        f".doubt{{stroke:{base['ink']}}}",
     ]
     for k, colour in enumerate(roles):
         rules += [f".f{k}{{fill:{colour}}}", f".s{k}{{stroke:{colour}}}"]

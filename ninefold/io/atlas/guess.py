@@ -73,9 +73,9 @@ class Guess:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences to be kept with the map: that it is a guess, and what is open."""
-        number = "an uncounted number of maps" if self.count is None else counted(self.count, "map")
+        number = "maps that were not counted" if self.count is None else counted(self.count, "map")
         noise = f"headings that err by {degrees(self.sigma):.3g} degrees"
-        return (f"this map is a guess, the likeliest of {number} that {noise} leave", *map(str, self.told))
+        return (f"this map is a guess: {noise} leave {number}, and it is the likeliest", *map(str, self.told))
 
     def to_json(self) -> str:
         """Return it as a JSON object."""
