@@ -106,9 +106,16 @@ class Judge:
         self.place = {v: truth.plane.vertex_names.row(name) for v, name in enumerate(reading.evidence.places)}
 
     def has_truth(self) -> bool:
-        """Whether the true order at every place is left, jointly in every group that was counted."""
-        settled = self.reading.settled
-        if not self.same_ways or settled is None or settled.failure is not None:
+        """Whether the true order at every place is left, jointly in every group that was counted.
+
+        A place with too many orders to be listed excludes none, and nothing was settled then.
+        """
+        settled, orders = self.reading.settled, self.reading.orders
+        if not self.same_ways or self.reading.failure is not None:
+            return False
+        if settled is None:
+            return all(any(self._true_order(v, number) for number in range(len(left))) for v, left in orders.items())
+        if settled.failure is not None:
             return False
         if not all(any(self._true_order(v, number) for number in left) for v, left in settled.left.items()):
             return False

@@ -65,6 +65,7 @@ def map_noisy_walk(
     doubted
         Sentences on the walk's header.
     """
+    from ninefold.errors import Undecided
     from ninefold.io import Atlas, Guess
     from ninefold.mapping import estimate
 
@@ -75,7 +76,11 @@ def map_noisy_walk(
         return _not_kept(found, source, as_json=as_json)
     guess = Guess.of(found)
     with progress(f"writing {out}"):
-        plane = found.best
+        try:
+            plane = found.best
+        except Undecided:  # too much is open for any map to be listed
+            notes(doubted)
+            return _not_kept(found, source, as_json=as_json)
         with Atlas.from_map(plane, out, provenance=provenance, warnings=found.warnings, guess=guess, force=force) as atlas:
             warnings = (*doubted, *atlas.warnings)
     if as_json:
@@ -98,7 +103,10 @@ def _not_kept(found: Estimate, source: str, *, as_json: bool) -> int:
     for doubt, told in zip(found.doubts, _told(found), strict=True):
         print(f"{doubt}; {told}" if told else str(doubt))
     notes(found.warnings)
-    note("no atlas was written; --best keeps the likeliest map, marked as a guess")
+    if next(found.maps(), None) is None:
+        note("no atlas was written; so much is open that no map is listed, and none is the likeliest")
+    else:
+        note("no atlas was written; --best keeps the likeliest map, marked as a guess")
     return 1
 
 

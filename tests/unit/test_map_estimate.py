@@ -265,6 +265,18 @@ def test_best_of_a_certain_map_is_no_guess(clear, tmp_path, capsys):
         assert (atlas.guess, atlas.warnings) == (None, ())
 
 
+@pytest.mark.parametrize("best", [(), ("--best",)])
+def test_where_no_map_can_be_listed_there_is_no_likeliest(tmp_path, capsys, best):
+    crowd = Walk(WalkHeader(), tuple(there_and_back(**{f"p{k}": k for k in range(12)})))
+    write_walk(crowd, tmp_path / "w.jsonl")
+    code, out, err = run(capsys, "map", tmp_path / "w.jsonl", "-o", tmp_path / "a.atlas", "--sigma", 10, *best)
+    assert code == 1
+    assert "more maps are left than were counted" in out
+    assert "the ways at 'yard' lie too close together" in out
+    assert "no map is listed" in err
+    assert not (tmp_path / "a.atlas").exists()
+
+
 def test_info_tells_what_is_undecided_and_which_walk_would_settle_it(guessed, capsys):
     code, out, _ = run(capsys, "info", guessed)
     assert code == 0
