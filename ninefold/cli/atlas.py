@@ -385,8 +385,9 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         print(f"health       {health(plane)}")
     if facts["fixed"] is not None:
         print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
-    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
-    print(f"made from    a {facts['origin']}{events}")
+    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" or facts["events"] else ""
+    estimated = facts["origin"] == "map" and facts["events"]
+    print(f"made from    a {'walk whose headings err' if estimated else facts['origin']}{events}")
     for record in facts["provenance"]:
         print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
     named = facts["names"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import degrees, radians
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +68,7 @@ def map_noisy_walk(
     """
     from ninefold.errors import Undecided
     from ninefold.io import Atlas, Guess
-    from ninefold.mapping import estimate
+    from ninefold.mapping import Walk, estimate
 
     with progress(f"estimating the map of {source}"), located:
         found = estimate(walk, sigma=sigma, drift=drift)
@@ -81,7 +82,16 @@ def map_noisy_walk(
         except Undecided:  # too much is open for any map to be listed
             notes(doubted)
             return _not_kept(found, source, as_json=as_json)
-        with Atlas.from_map(plane, out, provenance=provenance, warnings=found.warnings, guess=guess, force=force) as atlas:
+        header = replace(walk.header, sigma=found.noise.sigma, drift=found.noise.drift or None)
+        with Atlas.from_map(
+            plane,
+            out,
+            provenance=provenance,
+            warnings=found.warnings,
+            guess=guess,
+            walk=Walk(header, walk.events),
+            force=force,
+        ) as atlas:
             warnings = (*doubted, *atlas.warnings)
     if as_json:
         print_json({"file": str(out), **_sizes(plane), **_facts(found), "warnings": list(warnings)})

@@ -85,7 +85,7 @@ def render(
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets), legs="" if colouring is None else colouring.told),
+        _defs(theme, len(sets), legs="" if colouring is None else colouring.told, doubts=bool(marks)),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
@@ -201,7 +201,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int, *, legs: str) -> str:
+def _defs(theme: str, used: int, *, legs: str, doubts: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -209,7 +209,9 @@ def _defs(theme: str, used: int, *, legs: str) -> str:
         for k in range(used)
         if _HATCH[k] is not None
     )
-    return f"<style>{style_sheet(theme, used, legs=legs)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+    return (
+        f"<style>{style_sheet(theme, used, legs=legs, doubts=doubts)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+    )
 
 
 def _heading(title: str | None) -> list[str]:

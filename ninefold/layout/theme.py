@@ -38,7 +38,7 @@ LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E22
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, mode: str) -> str:
+def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, mode: str, *, doubts: bool) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -49,7 +49,6 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, 
         f".faint{{fill:{base['faint']}}}",
         f".name{{fill:{base['ink']};stroke:{base['paper']}}}",
         f".leader{{stroke:{base['faint']}}}",
-        f".doubt{{stroke:{base['ink']}}}",
     ]
     for k, colour in enumerate(roles):
         rules += [f".f{k}{{fill:{colour}}}", f".s{k}{{stroke:{colour}}}"]
@@ -58,21 +57,24 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, 
         rules += [f".evened{{stroke:{EVENED[mode]}}}", f".contradicted{{stroke:{CONTRADICTED[mode]}}}"]
     elif legs == "health":
         rules += [f".closing{k}{{stroke:{colour}}}" for k, colour in enumerate(CLOSING[mode])]
+    if doubts:
+        rules.append(f".doubt{{stroke:{base['ink']}}}")
     return "".join(f"{scope} {rule}" for rule in rules)
 
 
-def style_sheet(theme: str, used: int, *, legs: str = "") -> str:
+def style_sheet(theme: str, used: int, *, legs: str = "", doubts: bool = False) -> str:
     """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
 
     With ``legs="rigidity"`` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``,
-    ``contradicted``; with ``legs="health"`` for closing residuals: ``closing0`` to ``closing7``.
+    ``contradicted``; with ``legs="health"`` for closing residuals: ``closing0`` to ``closing7``. With
+    `doubts` there is one for ``doubt``.
 
     The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
     the whole page.
     """
     scope = f".ninefold-{theme}"
-    light = _rules(scope, LIGHT, ROLES[:used], legs, "light")
-    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], legs, "dark")
+    light = _rules(scope, LIGHT, ROLES[:used], legs, "light", doubts=doubts)
+    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], legs, "dark", doubts=doubts)
     match theme:
         case "light":
             return light

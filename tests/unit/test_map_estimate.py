@@ -68,6 +68,9 @@ def test_a_certain_map_is_kept(clear, tmp_path, capsys):
     with Atlas.open(tmp_path / "a.atlas") as atlas:
         assert atlas.plane == estimate(CLEAR, sigma=SIGMA).plane
         assert (atlas.origin, atlas.guess, atlas.provenance[0].kind) == ("map", None, "walk")
+        assert atlas.walk == Walk(WalkHeader(sigma=SIGMA), CLEAR.events)
+        with pytest.raises(BadInput, match="takes no events"):
+            atlas.append(Visit("a"))
         assert not any("guess" in warning for warning in atlas.warnings)
 
 
@@ -112,6 +115,23 @@ def test_an_atlas_that_is_there_stays_where_the_map_is_not_certain(clear, close,
     before = out_file.read_bytes()
     assert run(capsys, "map", close, "-o", out_file, "--sigma", 2, "--force")[0] == 1
     assert out_file.read_bytes() == before
+
+
+def test_the_walk_is_kept_with_its_metres_and_can_be_estimated_again(tmp_path, capsys):
+    lines = [
+        b'{"ninefold": "walk", "version": 1, "heading": "bearing-deg", "drift": 0.01}\n',
+        b'{"place": "a", "t": 1}\n',
+        b'{"heading": 90, "metres": 3}\n',
+        b'{"place": "b", "t": 5}\n',
+    ]
+    (tmp_path / "w.jsonl").write_bytes(b"".join(lines))
+    assert run(capsys, "map", tmp_path / "w.jsonl", "-o", tmp_path / "a.atlas", "--sigma", 2)[0] == 0
+    with Atlas.open(tmp_path / "a.atlas") as atlas:
+        assert atlas.plane.metres is not None
+        assert atlas.plane == estimate(atlas.walk).plane
+        assert (atlas.walk.header.sigma, atlas.walk.header.drift, atlas.n_events) == (SIGMA, 0.01, 3)
+        assert atlas.walk.events == read_walk(tmp_path / "w.jsonl").events
+    assert "a walk whose headings err, 3 events" in run(capsys, "info", tmp_path / "a.atlas")[1]
 
 
 def test_scatter_is_told_in_degrees(tmp_path, capsys):

@@ -149,9 +149,10 @@ class Atlas:
         provenance: Provenance | None = None,
         warnings: Iterable[str] = (),
         guess: Guess | None = None,
+        walk: Walk | None = None,
         force: bool = False,
     ) -> Self:
-        """Make an atlas of a finished map, without a walk, and open it.
+        """Make an atlas of a finished map, and open it. It takes no further events.
 
         Parameters
         ----------
@@ -160,16 +161,28 @@ class Atlas:
         guess
             What is in doubt about the map, if it is the likeliest of several: `Guess.of` an estimate. Its warnings are kept
             before the others.
+        walk
+            What the map was estimated from, to be kept with it as evidence.
 
         Raises
         ------
         BadInput, AtlasError
             If the file exists, or cannot be written; then nothing is changed.
         """
+        header, events = (WalkHeader(), ()) if walk is None else (walk.header, walk.events)
+
+        def rows() -> Iterator[tuple[int, str]]:
+            time = -math.inf
+            for seq, event in enumerate(events, 1):
+                time = checked_time(event, time)
+                yield seq, event_text(event)
 
         def fill(connection: sqlite3.Connection) -> None:
             said = (*(guess.warnings if guess else ()), *warnings)
-            put(connection, origin="map", header=header_text(WalkHeader()), map_events=0, warnings=sentences(said))
+            put(connection, origin="map", header=header_text(header), map_events=len(events), warnings=sentences(said))
+            if any(map(tells_metres, events)):
+                _schema.keep_metres(connection)
+            connection.executemany("INSERT INTO event VALUES (?, ?)", rows())
             if guess is not None:
                 put(connection, guess=guess.to_json())
             store_map(connection, plane)
@@ -239,7 +252,10 @@ class Atlas:
 
     @property
     def origin(self) -> str:
-        """``"walk"`` where the map is built from an event log, ``"map"`` where it was stored as a whole."""
+        """``"walk"`` where the map is built from an event log, ``"map"`` where it was stored as a whole.
+
+        The events of the latter, if there are any, are the walk that the map was estimated from.
+        """
         return self._log.origin
 
     @property
