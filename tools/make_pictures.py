@@ -12,11 +12,12 @@ from __future__ import annotations
 import re
 import sys
 from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 from ninefold.io import samples
 from ninefold.layout import Drawing, TrueShapes, compass, side_by_side
-from ninefold.mapping import PlaneMap, Set, build
+from ninefold.mapping import PlaneMap, Set, build, estimate
 from ninefold.mapping.robot.simulated import explore
 
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
@@ -71,7 +72,15 @@ def office() -> str:
     return compass(plane).to_svg(highlight=sets, width=560)
 
 
-PICTURES = {"district-beside.svg": district, "office.svg": office}
+def guess() -> str:
+    """The same world walked with a compass that errs by 10 degrees: the likeliest map, and what is undecided about it."""
+    walk = explore(samples.load("office").to_world(), seed=1, noise=radians(10), step=10.0).walk
+    found = estimate(walk)
+    doubts = [replace(one, text="; ".join([one.text, *map(str, found.more(one))])) for one in found.doubts]
+    return compass(found.best).to_svg(doubts=doubts, width=560)
+
+
+PICTURES = {"district-beside.svg": district, "guess.svg": guess, "office.svg": office}
 
 
 def main(folder: Path) -> None:
