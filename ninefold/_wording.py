@@ -9,7 +9,7 @@ Examples
 
 from __future__ import annotations
 
-__all__ = ["LONGEST_QUOTE", "counted", "quoted", "shortened"]
+__all__ = ["LONGEST_QUOTE", "counted", "percent", "quoted", "shortened"]
 
 LONGEST_QUOTE = 80
 """Characters of given text that a message repeats."""
@@ -51,3 +51,22 @@ def counted(number: int, one: str, many: str | None = None) -> str:
         The noun for 1, and for any other number; left out, the plural is made with an s.
     """
     return f"{number:,} {one if number == 1 else many or one + 's'}"
+
+
+def percent(share: float) -> str:
+    """Return a probability in percent, as exactly as it needs to be; what is not 0 or 1 is never written so.
+
+    Examples
+    --------
+    >>> [percent(p) for p in (0, 1e-9, 0.0123, 0.25, 0.994, 0.99998, 1)]
+    ['0 %', 'below 0.01 %', '1.2 %', '25 %', '99.4 %', 'over 99.99 %', '100 %']
+    """
+    if share in (0, 1):
+        return f"{100 * share:.0f} %"
+    if share < 1e-4:
+        return "below 0.01 %"
+    if share > 0.9999:
+        return "over 99.99 %"
+    if share >= 0.99:
+        return f"{min(share, 0.9999) * 100:.2f}".rstrip("0").rstrip(".") + " %"
+    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{100 * share:.2g} %"

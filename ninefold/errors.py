@@ -24,6 +24,7 @@ __all__ = [
     "AtlasError",
     "BadInput",
     "DifferentMaps",
+    "EmptyBelief",
     "EmptySet",
     "MissingExtra",
     "NinefoldError",
@@ -190,6 +191,37 @@ class Undecided(NinefoldError, RuntimeError):
     def __init__(self, message: str, *, kind: str) -> None:
         super().__init__(message)
         self.kind = kind
+
+
+class EmptyBelief(NinefoldError, ValueError):
+    """No place of a map fits what a robot saw or did: the map is wrong, or headings err by more than was declared.
+
+    Attributes
+    ----------
+    observation, moves
+        Which look around it was, counted from 1, or the number of looks before a move that fits nowhere; and the number of
+        moves before it.
+    nearest
+        Name of the place, of those possible before, that comes nearest to what was seen; None where there is none.
+    event
+        The number of the event of a walk that showed it, counted from 1, or None.
+    reason
+        The message without that number before it.
+    """
+
+    def __init__(self, message: str, *, observation: int, moves: int, nearest: str | None) -> None:
+        super().__init__(message)
+        self.observation = observation
+        self.moves = moves
+        self.nearest = nearest
+        self.event: int | None = None
+        self.reason = message
+
+    def at_event(self, number: int) -> EmptyBelief:
+        """Return the same error with the number of the event of a walk, counted from 1, before its message."""
+        found = EmptyBelief(f"event {number}: {self}", observation=self.observation, moves=self.moves, nearest=self.nearest)
+        found.event, found.reason = number, self.reason
+        return found
 
 
 class MissingExtra(NinefoldError, ImportError):

@@ -17,11 +17,12 @@ from pathlib import Path
 
 from ninefold.io import samples
 from ninefold.layout import Drawing, TrueShapes, compass, side_by_side
-from ninefold.mapping import PlaneMap, Set, build, estimate
+from ninefold.mapping import Follower, PlaneMap, Set, WalkHeader, build, estimate
 from ninefold.mapping.robot.simulated import explore
 
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
 CREDIT = "\N{COPYRIGHT SIGN} OpenStreetMap contributors, ODbL"
+LOST = "v100"
 AVENUES = ("Mannerheimintie", "Unioninkatu")
 
 
@@ -80,7 +81,24 @@ def guess() -> str:
     return compass(found.best).to_svg(doubts=doubts, width=560)
 
 
-PICTURES = {"district-beside.svg": district, "guess.svg": guess, "office.svg": office}
+def lost() -> str:
+    """Where a robot without a compass can be after its first look around, and one move later."""
+    source = samples.load("helsinki_district")
+    plane = walked(source)
+    robot = Follower(plane, WalkHeader(compass=False), sigma=radians(10))
+    drawing = replace(compass(plane), notes=(CREDIT,))
+    told = {0: "After one look around", 1: "One move later"}
+    sheets = []
+    events = explore(source.to_world(), start=LOST, seed=2, noise=radians(10)).walk.events
+    for event in events:
+        if robot.step(event) and (title := told.pop(robot.localizer.moves, None)):
+            sheets.append(drawing.to_svg(belief=robot.localizer.probabilities, title=title, width=580))
+        if not told:
+            break
+    return side_by_side(*sheets)
+
+
+PICTURES = {"district-beside.svg": district, "guess.svg": guess, "lost.svg": lost, "office.svg": office}
 
 
 def main(folder: Path) -> None:

@@ -209,6 +209,7 @@ class Drawing(Immutable):
         width: int = 800,
         rigidity: bool | Rigidity = False,
         health: bool | Health = False,
+        belief: ArrayLike | None = None,
         doubts: Iterable[Doubt] = (),
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
@@ -232,6 +233,9 @@ class Drawing(Immutable):
         health
             Colour the edges by how far their headings and turn disagree, in degrees, on one scale for all maps. True, or
             what `ninefold.mapping.health` returned; not together with `rigidity`.
+        belief
+            (V,) how likely a robot is at each place, such as ``Localizer.probabilities``: the likely places are marked, and
+            the likeliest named.
         doubts
             Of an estimate whose likeliest map this is: the places where something is undecided get numbered rings, and the
             sentences stand below.
@@ -239,8 +243,8 @@ class Drawing(Immutable):
         Raises
         ------
         BadInput, DifferentMaps
-            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map, or
-            `rigidity` or `health` for a map without headings.
+            For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map,
+            `rigidity` or `health` for a map without headings, a belief that is none, or what is no doubt.
         UnknownName
             For doubts about a place that the map does not have.
         """
@@ -255,6 +259,7 @@ class Drawing(Immutable):
             width=width,
             rigidity=rigidity,
             health=health,
+            belief=belief,
             doubts=doubts,
         )
 

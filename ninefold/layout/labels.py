@@ -54,7 +54,7 @@ def place_labels(
     pieces: NDArray[np.float64],
     *,
     size: float,
-    dot: float,
+    dot: float | NDArray[np.float64],
     frame: tuple[float, float, float, float],
 ) -> list[Label]:
     """Place the names of points.
@@ -66,7 +66,7 @@ def place_labels(
     pieces
         (S, 4) straight pieces to keep clear of where possible.
     size, dot
-        Height of the text and radius of a vertex, pixels.
+        Height of the text and radius of a vertex, or of each, (V,), pixels.
     frame
         x0, y0, x1, y1: no label leaves it.
 
@@ -82,11 +82,12 @@ def place_labels(
     reach = np.sort(np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)), axis=1)
     crowded = np.argsort(reach[:, min(3, len(points) - 1)], kind="stable")
     boxes = np.zeros((0, 4))
-    dots = np.concatenate([points - dot - 1, points + dot + 1], axis=1)
+    radius = np.broadcast_to(np.asarray(dot, np.float64), len(points))
+    dots = np.concatenate([points - radius[:, None] - 1, points + radius[:, None] + 1], axis=1)
     found: dict[int, Label] = {}
     for v in crowded.tolist():
         wide, high = text_width(names[v], size) / 2 + 1, size / 2 + 1
-        centres, radii = _places(points[v], wide, high, dot)
+        centres, radii = _places(points[v], wide, high, float(radius[v]))
         candidate = np.concatenate([centres - (wide, high), centres + (wide, high)], axis=1)
         free = (candidate[:, :2] >= frame[:2]).all(axis=1) & (candidate[:, 2:] <= frame[2:]).all(axis=1)
         free &= ~_overlap(candidate, np.concatenate([boxes, dots])).any(axis=1)
@@ -96,7 +97,7 @@ def place_labels(
         cost = 6.0 * _cuts(candidate[rows], pieces) + 0.55 * radii[rows]
         best = int(rows[np.argmin(cost)])
         boxes = np.concatenate([boxes, candidate[best : best + 1]])
-        found[v] = _label(names[v], points[v], centres[best], float(radii[best]), (wide, high), dot)
+        found[v] = _label(names[v], points[v], centres[best], float(radii[best]), (wide, high), float(radius[v]))
     return [found[v] for v in sorted(found)]
 
 

@@ -7,9 +7,9 @@ triangle; the picture shears it to an equilateral one, which keeps straight line
 
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
 the rest contradicts broad and on top; or by how well headings and turns agree (`health_scale`), the worst broadest and on
-top. Highlighted lines and outlines then lie below the edges, and reach out on both sides.
-
-What is undecided about a map that was estimated is marked where it is and said below (`doubt_marks`).
+top. Highlighted lines and outlines then lie below the edges, and reach out on both sides. By request too, the places where a
+robot can be are marked (`beliefs`), larger and stronger the likelier they are, and what is undecided about a map that was
+estimated, with sentences below (`doubt_marks`).
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
+from .beliefs import belief_of
 from .doubt_marks import DoubtMark, doubt_marks, doubt_sentences, doubt_words, ring
 from .health_scale import health_colouring, health_of, health_scale
 from .labels import place_labels, text_width
@@ -35,11 +36,12 @@ from .theme import ROLES, THEMES, style_sheet
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from ninefold.mapping import Doubt, Health, Set
 
     from .bearing_rigidity import Rigidity
+    from .beliefs import Belief
     from .drawing import Drawing
     from .leg_classes import LegColouring
 
@@ -69,6 +71,7 @@ def render(
     width: int = 800,
     rigidity: bool | Rigidity = False,
     health: bool | Health = False,
+    belief: ArrayLike | None = None,
     doubts: Iterable[Doubt] = (),
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
@@ -78,6 +81,7 @@ def render(
         raise BadInput(f"width is in pixels, from 100 to 20000, not {width}")
     sets = named_sets(drawing, highlight)
     colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
+    seen = belief_of(drawing.plane, belief)
     said = tuple(doubts)
     marks = doubt_marks(drawing.plane, said)
     page = _Page(drawing, width, title)
@@ -85,7 +89,13 @@ def render(
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets), legs="" if colouring is None else colouring.told, doubts=bool(marks)),
+        _defs(
+            theme,
+            len(sets),
+            legs="" if colouring is None else colouring.told,
+            belief=seen is not None,
+            doubts=bool(marks),
+        ),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
@@ -96,11 +106,18 @@ def render(
         *([] if colouring is None else _classed_edges(page, colouring)),
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
+        *([] if seen is None else _spots(page, seen)),
         *_doubted(page, marks),
     ]
-    if shown:
-        body += _names(page, {x.index for _, x in sets if isinstance(x, Point)})
-    legend, height = _legend(page, sets, colouring, marks, doubt_sentences(said))
+    if shown or (seen is not None and seen.names):
+        names: dict[int, str] = dict(enumerate(drawing.plane.vertex_names)) if shown else {}
+        least = 7.0 if any(isinstance(x, Point) for _, x in sets) else page.dot
+        radii: dict[int, float] = {mark.vertex: _ring_radius(page) for mark in marks}
+        if seen is not None:
+            names |= {spot.vertex: seen.text(spot) for spot in seen.spots} if shown else seen.names
+            radii |= {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
+        body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
+    legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said))
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -201,7 +218,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int, *, legs: str, doubts: bool) -> str:
+def _defs(theme: str, used: int, *, legs: str, belief: bool, doubts: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -210,7 +227,8 @@ def _defs(theme: str, used: int, *, legs: str, doubts: bool) -> str:
         if _HATCH[k] is not None
     )
     return (
-        f"<style>{style_sheet(theme, used, legs=legs, doubts=doubts)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+        f"<style>{style_sheet(theme, used, legs=legs, belief=belief, doubts=doubts)}</style>"
+        f"{f'<defs>{hatches}</defs>' if hatches else ''}"
     )
 
 
@@ -324,10 +342,14 @@ def _point(page: _Page, k: int, x: Point) -> list[str]:
     ]
 
 
+def _ring_radius(page: _Page) -> float:
+    return max(7.0, page.dot + 3.0)
+
+
 def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
     """Return a numbered ring for every place where something is undecided."""
     at = page.place(page.drawing.points).tolist()
-    radius = max(7.0, page.dot + 3.0)
+    radius = _ring_radius(page)
     rings, numbers = [], []
     for mark in marks:
         x, y = at[mark.vertex]
@@ -339,17 +361,28 @@ def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
     return [*rings, f'<g class="name" {look}>{"".join(numbers)}</g>'] if marks else []
 
 
-def _names(page: _Page, marked: set[int]) -> list[str]:
-    plane = page.drawing.plane
+def _spots(page: _Page, seen: Belief) -> list[str]:
+    """Return the marks of where a robot can be, the likeliest on top."""
+    at = page.place(page.drawing.points[[spot.vertex for spot in seen.spots]]).tolist()
+    marks = [
+        f'<circle class="belief{spot.step}" cx="{x:.2f}" cy="{y:.2f}" r="{page.dot + spot.radius:.2f}">'
+        f"<title>{_escaped(seen.text(spot))}</title></circle>"
+        for spot, (x, y) in zip(seen.spots, at, strict=True)
+    ]
+    return [f'<g class="spot" stroke-width="{min(1.4, page.dot):.2f}">{"".join(reversed(marks))}</g>']
+
+
+def _names(page: _Page, named: Mapping[int, str], radii: NDArray[np.float64]) -> list[str]:
+    """Return the names of some vertices, clear of their dots and marks, whose radii are given in pixels."""
     pieces, _ = page.drawing.pieces
     drawn = np.concatenate([page.place(pieces[:, :2]), page.place(pieces[:, 2:])], axis=1)
-    size = 13.0 if plane.n_vertices <= 25 else 11.0
+    size = 11.0 if len(named) > 25 else 13.0
     placed = place_labels(
-        [name if len(name) <= 24 else f"{name[:23]}\N{HORIZONTAL ELLIPSIS}" for name in plane.vertex_names],
-        page.place(page.drawing.points),
+        [text if len(text) <= 24 else f"{text[:23]}\N{HORIZONTAL ELLIPSIS}" for text in named.values()],
+        page.place(page.drawing.points[list(named)]),
         drawn,
         size=size,
-        dot=max(page.dot, 7.0 if marked else 0.0),
+        dot=radii,
         frame=(2.0, page.top + 2.0, page.width - 2.0, page.bottom - 2.0),
     )
     leaders = "".join("M{:.1f},{:.1f} {:.1f},{:.1f}".format(*label.leader) for label in placed if label.leader)
@@ -365,6 +398,7 @@ def _legend(
     page: _Page,
     sets: list[tuple[str, Set]],
     colouring: LegColouring | None,
+    seen: Belief | None,
     marks: tuple[DoubtMark, ...],
     doubted: list[str],
 ) -> tuple[list[str], float]:
@@ -375,6 +409,7 @@ def _legend(
     ]
     if colouring is not None and colouring.told == "rigidity":
         entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
+    entries += [] if seen is None else [(partial(_spot_swatch, step), words) for step, words in seen.entries]
     entries += [(partial(_ring_swatch, kind), words) for kind, words in doubt_words(marks)]
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
@@ -392,6 +427,8 @@ def _legend(
     caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
     if colouring is not None:
         caption.append(colouring.caption)
+    if seen is not None:
+        caption.append(seen.caption.replace(" %", "\N{NO-BREAK SPACE}%"))
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
@@ -409,6 +446,10 @@ def _ring_swatch(kind: str, x: float, y: float) -> str:
 def _leg_swatch(name: str, x: float, y: float) -> str:
     way = f"M{x + 2:.1f},{y:.1f} {x + 20:.1f},{y:.1f}"
     return f'<path class="{name}" fill="none" {_leg_look(name, 1.6)} d="{way}"/>'
+
+
+def _spot_swatch(step: int, x: float, y: float) -> str:
+    return f'<circle class="belief{step}" cx="{x + 11:.1f}" cy="{y:.1f}" r="{8 - 1.5 * step:g}"/>'
 
 
 def _swatch(k: int, s: Set, x: float, y: float) -> str:
@@ -445,7 +486,7 @@ def _counts(drawing: Drawing) -> str:
 
 def _wrapped(text: str, most: float) -> list[str]:
     lines, line = [], ""
-    for word in text.split():
+    for word in text.split(" "):
         if line and len(line) + 1 + len(word) > most:
             lines.append(line)
             line = word

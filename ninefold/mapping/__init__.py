@@ -9,6 +9,8 @@ whole map or raise. How a robot builds one, event by event, is a room of its own
 a map, `build` runs it over a `Walk`, and `explore` simulates a robot.
 
 **Its health** is how well headings and turns agree, edge by edge: `health`.
+**Where it is.** A `Localizer` tells where on a map a robot can be that was switched on somewhere, from noisy headings;
+`locate` takes one along a walk, a `Follower` event by event.
 
 **The sets** are `Point`, `Line` and `Region`; a map makes them from names, edges, cycles or faces. `Vertex`, `Dart`, `Edge`
 and `Face` are types for the numbers that index the arrays of a map.
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from .closing import Health, health
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
+    from .doubt.following import Follower, locate
+    from .doubt.localizer import Candidate, Localizer, Move
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -40,6 +44,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Again",
+    "Candidate",
     "Closure",
     "Dart",
     "Doubt",
@@ -48,10 +53,13 @@ __all__ = [
     "Event",
     "Exploration",
     "Face",
+    "Follower",
     "Heading",
     "Health",
     "Line",
+    "Localizer",
     "Mapper",
+    "Move",
     "Names",
     "PlaneMap",
     "Point",
@@ -70,6 +78,7 @@ __all__ = [
     "estimate",
     "explore",
     "health",
+    "locate",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -81,6 +90,8 @@ __getattr__, __dir__ = attach(
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
+        "doubt.following": ("Follower", "locate"),
+        "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

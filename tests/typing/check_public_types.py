@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ninefold.layout import Drawing, draw
-from ninefold.mapping import Dart, Edge, Face, Heading, Line, PlaneMap, Point, Region, Vertex
+from ninefold.mapping import Candidate, Dart, Edge, Face, Heading, Line, Localizer, Move, PlaneMap, Point, Region, Vertex
 from ninefold.reasoner import Relation, relate, relate_all, relate_pairs
 
 
@@ -35,3 +35,11 @@ def check(plane: PlaneMap) -> None:
     plane.face_darts(3)  # type: ignore[arg-type]
     plane.heading_of(plane.vertex("a").index)  # type: ignore[arg-type]
     assert_type(draw(plane, highlight=[plane.face(1)]), Drawing)
+    robot = Localizer(plane, sigma=0.1)
+    assert_type(robot.observe([Heading(0.0)], came_by=0).move(0).move(Heading(1.0)), Localizer)
+    assert_type(robot.best_move(), Move)
+    assert_type(robot.move(robot.best_move()).candidates(), tuple[Candidate, ...])
+    assert_type(robot.likeliest.dart, Dart | None)
+    assert_type(robot.inside(plane.face(1)), float)
+    robot.observe([0.5])  # type: ignore[list-item]
+    robot.move(0.5)  # type: ignore[arg-type]

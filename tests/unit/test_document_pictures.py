@@ -36,14 +36,17 @@ def test_the_documents_show_every_picture():
     shown = "".join((ROOT / name).read_text("utf-8") for name in ("README.md", "docs/index.md"))
     for name in re.findall(r'(?:src="|\]\()((?:docs/)?pictures/[^")]+)', shown):
         assert (ROOT / "docs" / name.removeprefix("docs/")).is_file()
-    assert all(f"pictures/{file.name}" in shown for file in PICTURES)
+    everywhere = "".join(file.read_text("utf-8") for file in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")])
+    assert all(f"pictures/{file.name}" in everywhere for file in PICTURES)
     assert "docs/pictures/district-beside.svg" in (ROOT / "README.md").read_text("utf-8")[:3000]
 
 
 def test_the_streets_are_credited():
+    pictures = [ElementTree.parse(FOLDER / name) for name in ("district-beside.svg", "lost.svg")]
+    pages = [ROOT / name for name in ("README.md", "docs/index.md", "docs/how-to/where-am-i.md")]
     texts = [
-        " ".join(element.text or "" for element in ElementTree.parse(FOLDER / "district-beside.svg").iter(f"{SVG}text")),
-        *(" ".join((ROOT / name).read_text("utf-8").split()) for name in ("README.md", "docs/index.md")),
+        *(" ".join(element.text or "" for element in picture.iter(f"{SVG}text")) for picture in pictures),
+        *(" ".join(page.read_text("utf-8").split()) for page in pages),
     ]
     assert all("\N{COPYRIGHT SIGN} OpenStreetMap contributors, ODbL" in text for text in texts)
 

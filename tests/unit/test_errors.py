@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 from ninefold import errors
-from ninefold.errors import MissingExtra, NinefoldError, NotPlane, Undecided, UnknownName, WalkError
+from ninefold.errors import EmptyBelief, MissingExtra, NinefoldError, NotPlane, Undecided, UnknownName, WalkError
 
 MADE = [
     UnknownName("vertex", "v9", ["v1", "v2"]),
@@ -15,6 +15,7 @@ MADE = [
     WalkError("no heading", where="line 3"),
     Undecided("not decided", kind="theory"),
     MissingExtra("a plot", "plot"),
+    EmptyBelief("nothing fits", observation=2, moves=1, nearest="v3"),
 ]
 PLAIN = [
     kind("something is wrong")

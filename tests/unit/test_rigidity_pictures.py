@@ -14,7 +14,7 @@ from ninefold.io import samples
 from ninefold.layout import Rigidity, compass, draw, rigidity, schnyder
 from ninefold.layout import svg as pictures
 from ninefold.layout.leg_classes import leg_classes
-from ninefold.layout.theme import CONTRADICTED, DARK, EVENED, FIXED, LIGHT
+from ninefold.layout.theme import BELIEF, CONTRADICTED, DARK, EVENED, FIXED, LIGHT
 from ninefold.mapping import PlaneMap
 from ninefold.mapping.turning import settle_turns
 
@@ -286,3 +286,13 @@ def test_readers_of_every_sight_can_tell_the_classes_apart(mode, base, sight):
         assert np.linalg.norm(a - b) > 18, (one, other)
     ground = lab(np.array(SEEN[sight]) @ linear(base["land"]))
     assert min(np.linalg.norm(a - ground) for a in seen) > 25
+
+
+@pytest.mark.parametrize("sight", SEEN)
+@pytest.mark.parametrize(("mode", "base"), [("light", LIGHT), ("dark", DARK)])
+def test_and_where_a_robot_can_be(mode, base, sight):
+    seen = [lab(np.array(SEEN[sight]) @ linear(colour)) for colour in BELIEF[mode]]
+    for a, b in itertools.combinations(seen, 2):
+        assert np.linalg.norm(a - b) > 18
+    for ground in (base["land"], base["paper"]):
+        assert min(np.linalg.norm(a - lab(np.array(SEEN[sight]) @ linear(ground))) for a in seen) > 25

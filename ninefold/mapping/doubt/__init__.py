@@ -1,4 +1,6 @@
-"""The robust half of mapping: maps from headings that err, with every doubt named.
+"""The robust half of mapping and localization: from headings that err, with every doubt named.
+
+**Which map?** `estimate` returns every map that a walk with recognised places leaves.
 
 =============  ==================================================================================================
 `noise`        what a compass is declared to err by, and the thresholds that keep the promise
@@ -22,5 +24,16 @@ the number of maps are named; no map left means more noise than declared.
 
 Every step keeps what it cannot exclude at those odds: an order that noise could have turned round, a bundle of legs that may
 be two ways, a whole turn that was sampled too coarsely. What falls falls by genus and turning, which pass from a map to its
-parts and so never exclude the truth. The public names are those of `ninefold.mapping`.
+parts and so never exclude the truth.
+
+**Where on it?** A robot that was switched on somewhere looks at exits and moves, and the belief over the places of a map is
+exact under the declared noise.
+
+=============  ==================================================================================================
+`localizer`    `Localizer`: what is seen and walked, one thing after another, narrows where the robot can be
+`following`    `locate`, `Follower`: a localizer taken along a walk, event by event
+=============  ==================================================================================================
+
+`Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can
+be those of a place; ``_ahead`` looks where to go. The public names are those of `ninefold.mapping`.
 """

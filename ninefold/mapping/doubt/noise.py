@@ -12,17 +12,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import log, pi
+from math import log, pi, radians
+from typing import TYPE_CHECKING
 
 from ..robot.walk import checked_drift, checked_sigma
 
-__all__ = ["CHANCE", "LOG_ODDS", "NoiseModel", "threshold"]
+if TYPE_CHECKING:
+    from ..robot.walk import WalkHeader
+
+__all__ = ["CHANCE", "DEFAULT_SIGMA", "LOG_ODDS", "NoiseModel", "sigma_of", "threshold"]
 
 CHANCE = 1e-9
 """Chance at which an alternative that is the truth is given up."""
 
 LOG_ODDS = -log(CHANCE)
 """Half squared misses above which one alternative is given up against another, and for one or two free angles outright."""
+
+
+DEFAULT_SIGMA = radians(5)
+"""Standard deviation of a heading where a robot is looked for and neither the caller nor the walk declares one."""
+
+
+def sigma_of(header: WalkHeader) -> float:
+    """Return the standard deviation of a heading that a walk declares, radians, or `DEFAULT_SIGMA`."""
+    return DEFAULT_SIGMA if header.sigma is None else header.sigma
 
 
 @cache
