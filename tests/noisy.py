@@ -200,7 +200,7 @@ def maps_seen(found: Outcome) -> Iterator[Seen]:
             yield seen(one.plane, [way.legs.tolist() for way in reading.ways])
 
 
-def holds(found: Outcome, true: Seen, *, most: int = 5000) -> bool | None:
+def holds(found: Outcome, true: Seen, *, most: int = 300) -> bool | None:
     """Whether a map is among those left: all at once where they are few, else factor by factor. None: not told."""
     if found.count is not None and found.count <= 300:
         return true in set(maps_seen(found))
@@ -224,6 +224,8 @@ def _holds(reading: Reading, ways: list[list[int]], orders: object, outer: objec
     if not all(any(is_true(place, n) for n in numbers) for place, numbers in reading.settled.left.items()):
         return False
     for factor in reading.settled.factors:
+        if factor.count is None:
+            return None
         for number in range(most):
             choice = factor.get(number)
             if choice is None:

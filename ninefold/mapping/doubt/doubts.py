@@ -236,6 +236,8 @@ def doubts_of(
             outer = _outer_doubt(reading)
             if outer is not None:
                 found.setdefault(("outer", ()), outer)
+        for doubt in _corner_doubts(reading):
+            found.setdefault(("outer", doubt.places), doubt)
         for doubt in _uncounted_doubts(reading):
             found.setdefault(("uncounted", doubt.places), doubt)
     if not counted_all or uncounted:
@@ -262,6 +264,20 @@ def _outer_doubt(reading: Reading) -> Doubt | None:
     else:
         text = f"which face is the outer one: {counted(likeliest, 'face')} can be"
     return Doubt("outer", (), (), text)
+
+
+def _corner_doubts(reading: Reading) -> list[Doubt]:
+    """Return doubts about the outer face where no rotation tells it: two ways nearly the same, or a way that winds."""
+    places = reading.evidence.places
+    found = []
+    for factor in reading.settled.factors if reading.settled else ():
+        if factor.outer > 1:
+            names = tuple(places[place] for place in factor.places)
+            shown = ", ".join(map(quoted, names[:4])) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
+            why = f", as a corner at {shown} may be narrow or wide" if names else ", as a way may wind once more"
+            text = f"which face is the outer one: {counted(factor.outer, 'face')} can be{why}"
+            found.append(Doubt("outer", names, (), text))
+    return found
 
 
 def _uncounted_doubts(reading: Reading) -> list[Doubt]:

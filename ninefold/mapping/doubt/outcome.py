@@ -138,7 +138,7 @@ class _Gathering:
                 names = tuple(self.evidence.places[end] for end in ends)
                 between = " and ".join(map(quoted, names))
                 return self._none_left(f"the headings of the legs between {between} scatter too widely for one way", names)
-            if len(readings) == 1 and len(readings[0]) == 1:
+            if len(readings) == 1 and len(readings[0]) == 1 and not (uncounted and uncounted[-1] is bundle):
                 self.misses += 2 * bundle.scatter(total)
                 self.free += 2 * (len(bundle.legs) - 1)
             if len(readings) > 1:
@@ -164,14 +164,11 @@ class _Gathering:
 
     def _spare(self, bundle: Bundle, room: NDArray[np.float64]) -> int:
         """Return how many more ways than one a bundle may hold."""
-        if bundle.tail == bundle.head:
-            spare = room[bundle.tail] // 2
-        else:
-            spare = min(room[bundle.tail], room[bundle.head])
+        spare = min(room[bundle.tail], room[bundle.head])
         if np.isinf(spare):  # nothing is listed: one way, unless the legs scatter or are named otherwise
             names = {name for leg in bundle.legs.tolist() if (name := self.evidence.edges[leg]) is not None}
             return max(len(names) - 1, 0)
-        return int(spare)
+        return int(spare) // 2 if bundle.tail == bundle.head else int(spare)
 
     def _fit_exits(self, parts: tuple[Bundle, ...]) -> bool:
         """Whether the ways of a reading can be matched with listed exits at either end, whatever the other ways are."""
@@ -215,8 +212,10 @@ class _Gathering:
             if not counted_all or uncounted:
                 return self._uncounted(settled, open_bundles, uncounted)
             return self._none_left(*_failure(settled[0]))
-        misses = self.misses + min(one.misses for one in left)
-        free = self.free + min(left, key=lambda one: one.misses).free
+        misses, free = self.misses, self.free
+        if counted_all and not uncounted:  # else no reading that is settled need be the true one
+            nearest = min(left, key=lambda one: one.misses)
+            misses, free = misses + nearest.misses, free + nearest.free
         scatter = self.noise.sigma * sqrt(misses / free) if free else None
         if free and float(gammaincc(free / 2, misses / 2)) < CHANCE:
             return self._none_left("the readings scatter more than that", (), scatter)

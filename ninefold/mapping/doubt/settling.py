@@ -113,10 +113,14 @@ class Factor:
         Where more than one order was open when the search began.
     count
         Number of choices that make different maps, None where the search was stopped.
+    outer
+        The most outer faces that choices of one and the same rotation have: which of two corners is the wide one, or how
+        often a way turns round, may be open where no order is.
     """
 
     places: tuple[int, ...]
     count: int | None
+    outer: int
     _source: Iterator[Choice]
     _made: list[Choice] = field(default_factory=list)
 
@@ -252,12 +256,12 @@ class _Search:
                     kinds = {id(kind): kind for _, combination, _ in solutions.made for kind in (combination[i],)}
                     kept = list(kinds.values()) if whole else variable.kinds
                     left[variable.place] = [star.number for star in _distinct([s for k in kept for s in k.members])]
-            factors.append(Factor(places, number, _choices(group, solutions)))
+            factors.append(Factor(places, number, _most_outer(solutions.made), _choices(group, solutions)))
         for variable in self.variables:
             if len(variable.kinds) == 1:
                 if variable.place < 0:
                     only = variable.kinds[0]
-                    factors.append(Factor((), 1, iter([Choice(0.0, (), ((variable.edge, only.number),), ())])))
+                    factors.append(Factor((), 1, 1, iter([Choice(0.0, (), ((variable.edge, only.number),), ())])))
                     continue
                 members = _distinct(variable.kinds[0].members)
                 left[variable.place] = [star.number for star in members]
@@ -492,6 +496,14 @@ def _number_of_maps(solutions: list[tuple[float, tuple[_Kind, ...], tuple[int, .
     return total
 
 
+def _most_outer(solutions: list[tuple[float, tuple[_Kind, ...], tuple[int, ...]]]) -> int:
+    """Return the most outer faces that solutions of one rotation have, 1 where there is no solution."""
+    outer: dict[tuple[tuple[int, ...], ...], set[tuple[int, ...]]] = {}
+    for _, combination, darts in solutions:
+        outer.setdefault(tuple(kind.order for kind in combination), set()).add(darts)
+    return max(map(len, outer.values()), default=1)
+
+
 def _distinct(stars: Sequence[Star]) -> list[Star]:
     """Return the likeliest star of every order, the likeliest first."""
     found: dict[tuple[int, ...], Star] = {}
@@ -503,7 +515,7 @@ def _distinct(stars: Sequence[Star]) -> list[Star]:
 def _free_factor(place: int, members: list[Star]) -> Factor:
     """Return a place whose orders are all legal whatever the others are."""
     choices = iter([Choice(star.cost, ((place, star.number),), (), ()) for star in members])
-    return Factor((place,) if len(members) > 1 else (), len(members), choices)
+    return Factor((place,) if len(members) > 1 else (), len(members), 1, choices)
 
 
 def _restricted(star: Star, kept: Callable[[int], bool]) -> tuple[tuple[int, ...], tuple[float, ...]]:

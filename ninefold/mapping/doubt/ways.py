@@ -266,10 +266,20 @@ def partings(
             trial = [*group, k]
             labels = np.array(trial)
             members = np.flatnonzero(labels == k)
-            if len(members) > 1 and bundle.part(members).scatter(variance) > threshold(2 * (n - 1)):
+            if len(members) > 1 and not _all_near(bundle, members[:-1], i, variance):
                 continue
-            stack.append(trial)
+            parts = tuple(bundle.part(np.flatnonzero(labels == one)) for one in range(max(trial) + 1))
+            free = 2 * (len(trial) - len(parts))
+            if not free or sum(part.scatter(variance) for part in parts) <= threshold(free):
+                stack.append(trial)
     return found
+
+
+def _all_near(bundle: Bundle, members: NDArray[np.int64], leg: int, variance: NDArray[np.float64]) -> bool:
+    """Whether a leg of a bundle is near each of some others, as two legs of one way are but for a chance of 1e-9."""
+    out, back = bundle.out[members] - bundle.out[leg], bundle.back[members] - bundle.back[leg]
+    own = float(bundle.weight[leg])
+    return bool(_near(out, back, bundle.tail, bundle.head, variance, bundle.weight[members], own).all())
 
 
 def way_of(
