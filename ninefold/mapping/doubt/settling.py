@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass, field
-from itertools import count, pairwise, product
+from itertools import chain, count, pairwise, product
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,7 +29,7 @@ from ..checks import face_labels, face_permutation
 from ..heading import TAU
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -256,7 +256,10 @@ class _Search:
                     kinds = {id(kind): kind for _, combination, _ in solutions.made for kind in (combination[i],)}
                     kept = list(kinds.values()) if whole else variable.kinds
                     left[variable.place] = [star.number for star in _distinct([s for k in kept for s in k.members])]
-            factors.append(Factor(places, number, _most_outer(solutions.made), _choices(group, solutions)))
+            if not whole:  # the likeliest first may take for ever: any that is legal, the likeliest alternatives tried first
+                solutions = _Replayed(chain(solutions.made, self._solutions(group, openly, dive=True)))
+            outer = _most_outer(solutions.made)
+            factors.append(Factor(places, number, outer, _choices(group, solutions, in_order=whole)))
         for variable in self.variables:
             if len(variable.kinds) == 1:
                 if variable.place < 0:
@@ -384,9 +387,12 @@ class _Search:
     # -- search --------------------------------------------------------------------------------------------------------
 
     def _solutions(
-        self, group: list[_Variable], openly: list[_Variable]
+        self, group: list[_Variable], openly: list[_Variable], *, dive: bool = False
     ) -> Iterator[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]:
-        """Yield the legal combinations of a group, the likeliest first, each with the darts outside; None after a try."""
+        """Yield the legal combinations of a group, each with the darts outside, and None after a try.
+
+        The likeliest comes first; or, to `dive`, whichever is reached from the likeliest beginnings without searching broadly.
+        """
         arrangement = self.arrangement
         held = np.zeros(self.core.size, np.int64)
         inside = {id(variable) for variable in group}
@@ -401,9 +407,9 @@ class _Search:
         for i in range(len(group) - 1, -1, -1):
             rest[i] = rest[i + 1] + min(kind.cost for kind in group[i].kinds)
         number = count()
-        heap: list[tuple[float, int, tuple[_Kind, ...], tuple[int, ...]]] = [(rest[0], next(number), (), ())]
+        heap: list[tuple[int, float, int, tuple[_Kind, ...], tuple[int, ...]]] = [(0, rest[0], next(number), (), ())]
         while heap:
-            cost, _, combination, outer = heapq.heappop(heap)
+            _, cost, _, combination, outer = heapq.heappop(heap)
             depth = len(combination)
             if depth == len(group):
                 yield cost, combination, outer
@@ -416,15 +422,16 @@ class _Search:
                 found = arrangement.judge(keep)
                 if found is not None:
                     bound = cost - rest[depth] + kind.cost + rest[depth + 1]
-                    heapq.heappush(heap, (bound, next(number), (*combination, kind), found))
+                    rank = -depth - 1 if dive else 0
+                    heapq.heappush(heap, (rank, bound, next(number), (*combination, kind), found))
             yield None
 
 
 class _Replayed:
     """Solutions as they are found, kept for those who ask later."""
 
-    def __init__(self, source: Iterator[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]) -> None:
-        self.source = source
+    def __init__(self, source: Iterable[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]) -> None:
+        self.source = iter(source)
         self.made: list[tuple[float, tuple[_Kind, ...], tuple[int, ...]]] = []
 
     def more(self) -> bool:
@@ -447,15 +454,15 @@ class _Replayed:
             i += 1
 
 
-def _choices(group: list[_Variable], solutions: _Replayed) -> Iterator[Choice]:
-    """Yield the choices of a group, the likeliest first, each map once."""
+def _choices(group: list[_Variable], solutions: _Replayed, *, in_order: bool) -> Iterator[Choice]:
+    """Yield the choices of a group, each map once; the likeliest first, if the solutions come so."""
     source = iter(solutions)
     ahead = next(source, None)
     number = count()
     heap: list[tuple[float, int, tuple[int, ...], tuple[_Kind, ...], tuple[int, ...]]] = []
     seen = set()
     while heap or ahead is not None:
-        while ahead is not None and (not heap or ahead[0] <= heap[0][0]):
+        while ahead is not None and (not heap or (in_order and ahead[0] <= heap[0][0])):
             cost, combination, outer = ahead
             for kind in combination:
                 kind.members.sort(key=lambda star: star.cost)
