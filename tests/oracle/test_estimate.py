@@ -25,9 +25,7 @@ def test_orders_that_legs_leave_open(seed):
         found = star_orders(heading.tolist(), variance.tolist())
         assert found is not None
         around = (heading - heading[0]) % TAU + heading[0]
-        got = {
-            (o.ways, tuple(round((x - around[i]) / TAU) for i, x in zip(o.ways, o.lifts, strict=True))) for o in found[0]
-        }
+        got = {(o.ways, tuple(round((x - around[i]) / TAU) for i, x in zip(o.ways, o.lifts, strict=True))) for o in found[0]}
         assert len(got) == len(found[0])
         assert got == set(orders_by_legs(heading.tolist(), variance.tolist()))
         for order in found[0]:

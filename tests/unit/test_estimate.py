@@ -46,7 +46,9 @@ def toured(world, degrees, seed=0, *, declared=None, **options):
 
 @pytest.mark.parametrize("sigma", [0, 0.0, -0.1, radians(61), float("nan"), "2", True])
 def test_a_sigma_that_is_none(sigma):
-    with pytest.raises(WalkError, match="sigma is the standard deviation of a heading in radians, above 0 and at most 1.047"):
+    with pytest.raises(
+        WalkError, match="sigma is the standard deviation of a heading in radians, above 0 and at most 1.047"
+    ):
         estimate(log(Visit("a")), sigma=sigma)
 
 
@@ -370,7 +372,9 @@ def test_the_outer_face_by_likelihood_where_rounding_fails():
         total[1::2] -= turn
         turned = np.bincount(face_of, weights=total, minlength=plane.n_faces) / (2 * np.pi)
         by_rounding += bool((np.rint(turned) == right).all())
-        miss = misses_by_outer_face(next_face, face_of, plane.n_faces, corner, turn, np.full(turn.size, tau**2 + 2 * sigma**2))
+        miss = misses_by_outer_face(
+            next_face, face_of, plane.n_faces, corner, turn, np.full(turn.size, tau**2 + 2 * sigma**2)
+        )
         found = outer_faces(miss).tolist()
         by_likelihood += found[0] == plane.outer_face
         among += plane.outer_face in found
@@ -381,3 +385,47 @@ def test_the_outer_face_by_likelihood_where_rounding_fails():
 def world_map(world):
     rng = np.random.default_rng(0)
     return true_plane(walked(world, every_dart(world, 0, rng), rng, sigma=0.01))[0]
+
+
+NARROW = SimulatedWorld(
+    [(0, 0), (10, 0.2), (0, 0.5), (-5, -5), (-5, 5), (10, 9)], [(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (4, 2), (1, 5)]
+)
+
+
+def test_narrow_corners_are_weighed_where_a_gyro_wanders():
+    """Two ways 2 degrees apart: which corner is wide moves a full turn from face to face, and was once taken as it seemed."""
+    kept = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        darts = [0, 2, 4, 6, 8, 10, 3, 1]
+        truth = walked(NARROW, darts, rng, sigma=radians(2), drift=radians(1), compass=False, exits="in-order", step=2.0)
+        found = outcome(truth.walk)
+        if found.count is not None:
+            kept += 1
+            assert holds(found, true_seen(truth))
+    assert kept > 20
+
+
+def test_too_many_narrow_corners_leave_the_outer_face_in_doubt(monkeypatch):
+    monkeypatch.setattr("ninefold.mapping.doubt.reading.MOST_LIFTED", 0)
+    rng = np.random.default_rng(0)
+    truth = walked(SQUARE, [0, 2, 4, 6], rng, sigma=radians(2), drift=radians(1), compass=False)
+    found = estimate(truth.walk)
+    assert found.count is None
+    assert [doubt.kind for doubt in found.doubts] == ["outer"]
+    assert "too many narrow corners" in found.doubts[0].text
+
+
+def test_gyro_readings_without_any_map_are_an_answer():
+    """Once a singular matrix: a reading that cannot be drawn has no faces to weigh."""
+    world = SimulatedWorld(
+        [(0, 0), (9, 0), (4, 8)],
+        [(0, 1), (0, 1), (1, 2), (1, 2), (2, 0), (2, 0)],
+        [None, [(0, 0), (4, -3), (9, 0)], None, [(9, 0), (9, 5), (4, 8)], None, [(4, 8), (-1, 5), (0, 0)]],
+    )
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        darts = every_dart(world, 0, rng) * 2
+        truth = walked(world, darts, rng, sigma=radians(10), drift=radians(3), compass=False, exits="in-order")
+        found = outcome(truth.walk)
+        assert holds(found, true_seen(truth)) is not False

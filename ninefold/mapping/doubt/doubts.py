@@ -251,16 +251,16 @@ def _number_of_maps(reading: Reading) -> int | None:
     if not reading.noise.wanders or reading.settled.count is None:
         return reading.settled.count
     found = list(islice(reading.found(), MOST_OUTER + 1))
-    return len(found) if len(found) <= MOST_OUTER else None
+    return len(found) if len(found) <= MOST_OUTER and not reading.untold else None
 
 
 def _outer_doubt(reading: Reading) -> Doubt | None:
     """Return the doubt about which face is the outer one, if the likeliest map has several."""
     likeliest = reading.outer_faces()
-    if likeliest == 1:
+    if likeliest == 1 and not reading.untold:
         return None
-    if likeliest == 0:
-        text = "the map has too many faces to tell the outer one by likelihood"
+    if reading.untold:
+        text = "the map has too many faces, or too many narrow corners, to tell the outer one by likelihood"
     else:
         text = f"which face is the outer one: {counted(likeliest, 'face')} can be"
     return Doubt("outer", (), (), text)

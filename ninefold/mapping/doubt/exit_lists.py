@@ -179,9 +179,7 @@ def biases(
         whole = TAU * np.round(off.mean(axis=1) / TAU)
         off -= whole[:, None]
         turned = off.mean(axis=1)
-        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (
-            2 * (spread + 2 * single / row.size)
-        )
+        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (2 * (spread + 2 * single / row.size))
         best = int(cost.argmin())
         if row.size > 1 and np.sort(cost)[1] - cost[best] <= LOG_ODDS:
             known[place] = False
