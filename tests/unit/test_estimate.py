@@ -429,3 +429,16 @@ def test_gyro_readings_without_any_map_are_an_answer():
         truth = walked(world, darts, rng, sigma=radians(10), drift=radians(3), compass=False, exits="in-order")
         found = outcome(truth.walk)
         assert holds(found, true_seen(truth)) is not False
+
+
+def test_many_readings_of_a_crowded_place_take_no_time():
+    """Two places and many ways between them, all in doubt together: every reading was once listed to the end."""
+    bows = [[(0, 0), (5, y), (10, 0)] for y in (-4, -2.5, -1, 1, 2.5, 4)]
+    world = SimulatedWorld([(0, 0), (10, 0)], [(0, 1)] * 6, bows)
+    rng = np.random.default_rng(0)
+    walk = walked(world, [0, 3, 4, 7, 8, 11] * 4, rng, sigma=radians(14), drift=radians(10)).walk
+    began = time.process_time()
+    found = estimate(walk)
+    assert found.count is None
+    assert found.doubts
+    assert time.process_time() - began < 10

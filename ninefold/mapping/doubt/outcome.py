@@ -149,7 +149,9 @@ class _Gathering:
         for parts in product(*options) if number <= MOST_READINGS else [tuple(each[0] for each in options)]:
             settled.append(self._settled([bundle for group in parts for bundle in group]))
             self.effort -= settled[-1].judged
-        return self._estimated(settled, open_bundles, uncounted, counted_all=number <= MOST_READINGS)
+            if settled[-1].crowded:  # not counted in any case, and the others would take as long
+                break
+        return self._estimated(settled, open_bundles, uncounted, counted_all=len(settled) == number)
 
     def _name(self, place: int) -> str:
         return quoted(self.evidence.places[place])
