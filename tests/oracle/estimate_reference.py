@@ -11,8 +11,9 @@ from ninefold.mapping.doubt.noise import LOG_ODDS, threshold
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ninefold.mapping.doubt.reading import Reading
     from noisy import Seen
+
+    from ninefold.mapping.doubt.reading import Reading
 
 TAU = 2 * pi
 
@@ -43,7 +44,7 @@ def rising_cost(lifts: Sequence[float], variance: Sequence[float]) -> float:
 
 
 def orders_by_legs(heading: Sequence[float], variance: Sequence[float]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """Every lifted order that legs leave open: ways from 0 on, and by how many turns each lies above its place in [h0, h0 + 2 pi)."""
+    """Every lifted order that legs leave open: ways from 0 on, and how many turns each is lifted."""
     k = len(heading)
     base = [heading[0] + (yaw - heading[0]) % TAU for yaw in heading]
     for rest in permutations(range(1, k)):

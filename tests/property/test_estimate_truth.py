@@ -49,7 +49,8 @@ def held(truth, *, all_listed):
     kept = holds(found, true_seen(truth))
     if kept is False:
         # ways that nothing could tell apart count as one: the documented assumption where no exits are listed
-        assert not all_listed and nearly_the_same(truth), (found.count, found.doubts)
+        assert not all_listed, found.doubts
+        assert nearly_the_same(truth), found.doubts
         return False
     assert kept is True or found.count is None
     certain = found.count == 1 and not found.doubts

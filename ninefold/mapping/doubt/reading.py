@@ -161,10 +161,10 @@ class Reading:
             yield miss, plane(settled_turns(*self._faces(after, heading), fitted_turn, face))
 
     def _by_outer_face(self, numbers: Mapping[int, int]) -> dict[int, tuple[float, dict[int, int]]]:
-        """Return the outer faces that one rotation can have, the likeliest first: half squared miss, and the orders it is of.
+        """Return the outer faces that one rotation can have, the likeliest first: half squared miss, and its orders.
 
-        Orders of one rotation may differ in which corner is the wide one; all are weighed against each other. None is
-        returned where there are too many to tell.
+        Orders of one rotation may differ in which corner is the wide one; all are weighed. None is returned where there
+        are too many to tell.
         """
         alike = [
             [n for n, order in enumerate(self.orders[place]) if order.ways == self.orders[place][number].ways]

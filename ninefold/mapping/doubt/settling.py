@@ -391,7 +391,7 @@ class _Search:
     ) -> Iterator[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]:
         """Yield the legal combinations of a group, each with the darts outside, and None after a try.
 
-        The likeliest comes first; or, to `dive`, whichever is reached from the likeliest beginnings without searching broadly.
+        The likeliest comes first; or, to `dive`, whichever is reached soonest from the likeliest beginnings.
         """
         arrangement = self.arrangement
         held = np.zeros(self.core.size, np.int64)
