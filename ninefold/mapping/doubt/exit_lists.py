@@ -149,42 +149,43 @@ def biases(
     """
     bias = np.zeros(len(evidence.at))
     known = np.array([all(evidence.exits[visit] is not None for visit in visits) for visits in visits_of], np.bool_)
-    frame: dict[int, tuple[NDArray[np.float64], float]] = {}
+    frame: dict[int, tuple[NDArray[np.float64], int]] = {}
+    parent = [0]  # how every frame was handed on, as a tree: of a place from the one that the robot came from
+    here = 0
     aligned: list[NDArray[np.float64]] = []
     single = noise.sigma**2
-    now, spread = 0.0, 0.0
+    now = 0.0
     for visit, place in enumerate(evidence.at.tolist()):
         if noise.compass:
-            now, spread = 0.0, noise.drift**2
-        else:
-            spread += noise.drift**2 + 2 * single
+            now = 0.0
         yaws = evidence.exits[visit]
         if yaws is None or not yaws.size or not known[place]:
             aligned.append(np.zeros(0))
+            here = _handed_on(parent, here)
             continue
         row = yaws if noise.in_order and yaws.size > 2 else np.sort(yaws)
         if place not in frame:
-            frame[place] = (row - now, spread)
+            here = _handed_on(parent, here)
+            frame[place] = (row - now, here)
             aligned.append(row)
             bias[visit] = now
             continue
-        mean, then = frame[place]
+        mean, there = frame[place]
+        legs = 1 + _apart(parent, here, there)
+        spread = 2 * noise.drift**2 if noise.compass else legs * (noise.drift**2 + 2 * single)
+        here = there
         off = wrap_all(_shifted(row[None])[0] - mean - now)
         off = off[:, :1] + wrap_all(off - off[:, :1])  # misses about half a turn lie on either side of it: one lump
         whole = TAU * np.round(off.mean(axis=1) / TAU)
         off -= whole[:, None]
         turned = off.mean(axis=1)
-        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (
-            2 * (spread + then + 2 * single / row.size)
-        )
+        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (2 * (spread + 2 * single / row.size))
         best = int(cost.argmin())
         if row.size > 1 and np.sort(cost)[1] - cost[best] <= LOG_ODDS:
             known[place] = False
         now += float(turned[best])
         bias[visit] = now
         aligned.append(mean + now + off[best] - turned[best])
-        if not noise.compass:
-            spread = then
     for place, visits in enumerate(visits_of):
         if not known[place]:
             bias[list(visits)] = 0.0
@@ -196,3 +197,20 @@ def biases(
         of_visit = rows.mean(axis=1)
         bias[list(visits)] = of_visit - (of_visit.mean() if noise.compass else of_visit[0] - bias[visits[0]])
     return bias, known
+
+
+def _handed_on(parent: list[int], here: int) -> int:
+    """Let a new frame come after this one, and return it. A frame has a higher number than the one it comes after."""
+    parent.append(here)
+    return len(parent) - 1
+
+
+def _apart(parent: list[int], a: int, b: int) -> int:
+    """Return how many legs lie between two frames: what the frame wandered over all other legs is the same for both."""
+    legs = 0
+    while a != b:
+        if a < b:
+            a, b = b, a
+        a = parent[a]
+        legs += 1
+    return legs
