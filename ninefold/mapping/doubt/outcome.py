@@ -13,7 +13,7 @@ from ninefold._wording import counted, quoted
 
 from .doubts import Doubt, doubts_of
 from .exit_lists import averaged, biases
-from .noise import CHANCE, threshold
+from .noise import CHANCE, SURE, threshold
 from .orders import star_orders
 from .reading import settled_reading
 from .ways import bundles, partings, way_of
@@ -33,9 +33,6 @@ __all__ = ["Outcome", "outcome_of"]
 
 MOST_READINGS = 64
 """Readings of a walk, legs shared out among ways, up to which all are settled."""
-
-SURE = 6.5
-"""Standard deviations that noise does not reach: a rotation between two samples that much short of half a turn is sure."""
 
 
 ODD = 1e-4
