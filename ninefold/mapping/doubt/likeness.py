@@ -1,8 +1,9 @@
 """Which nodes of a folded walk can be one place, and what that says of their exits.
 
 Two nodes can be one place under a shift k, exit x of the one being exit x + k of the other, when they have as many exits and
-the headings agree within the tolerance: with a compass as they are, without one up to a common turn. Exits that some chain of
-such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
+the headings agree within the tolerance: with a compass as they are, without one once some common turn is taken off. Where
+both walk an exit they must have walked it alike: with a compass as many whole turns, without one as far round, within twice
+the tolerance. Exits that some chain of such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     from .walk_tree import WalkTree
 
 __all__ = ["Likeness", "likeness"]
+
+EPSILON = 1e-9
+"""Radians that rounding may add."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +115,41 @@ def _shifts(tree: WalkTree) -> NDArray[np.int64]:
             if not tree.compass:
                 miss = miss - miss[:, :, :1]
             miss -= TAU * np.round(miss / TAU)
-            bits |= (np.abs(miss).max(axis=2) <= tree.tolerance + 1e-12).astype(np.int64) << k
+            if tree.compass:
+                agree = np.abs(miss).max(axis=2) <= tree.tolerance + EPSILON
+            else:
+                agree = np.ptp(miss, axis=2) <= 2 * tree.tolerance + EPSILON
+            for x in range(degree):
+                agree &= _walked_alike(tree, nodes, x, (x + k) % degree)
+            bits |= agree.astype(np.int64) << k
         found[np.ix_(nodes, nodes)] = bits
     np.fill_diagonal(found, 1)
     return found
+
+
+def _walked_alike(tree: WalkTree, nodes: NDArray[np.int64], x: int, y: int) -> NDArray[np.bool_]:
+    """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); True where one is not walked."""
+    first, second = (tree.other[nodes, exit] >= 0 for exit in (x, y))
+    agree = ~(first[:, None] & second[None, :])
+    n, m = nodes[first], nodes[second]
+    if not n.size or not m.size:
+        return agree
+    off = tree.turn[m, y][None, :] - tree.turn[n, x][:, None]
+    if tree.compass:
+        there, here = (_settled(tree, *exit) for exit in ((m, y), (n, x)))
+        off = there[0][None, :] - here[0][:, None]
+        for end, sign in ((1, 1), (2, -1)):
+            moved = there[end][None, :] - here[end][:, None]
+            off -= sign * (moved - TAU * np.round(moved / TAU))
+    agree[np.ix_(first, second)] = np.abs(off) <= (np.pi if tree.compass else 2 * tree.tolerance + EPSILON)
+    return agree
+
+
+def _settled(tree: WalkTree, n: NDArray[np.int64], x: int) -> tuple[NDArray[np.float64], ...]:
+    """Return the turn along the way out of an exit as the headings at its ends have it, and those of the far and near end."""
+    near, far, turn = tree.heading[n, x], tree.heading[tree.other[n, x], tree.back[n, x]], tree.turn[n, x]
+    miss = far + np.pi - near - turn
+    return turn + miss - TAU * np.round(miss / TAU), far, near
 
 
 def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:

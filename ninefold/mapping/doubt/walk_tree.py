@@ -277,7 +277,8 @@ def _alike(exits: list[float], others: list[float], shift: int, tolerance: float
     misses = [wrap(others[(i + shift) % count] - yaw) for i, yaw in enumerate(exits)]
     if compass:
         return all(abs(miss) <= tolerance for miss in misses)
-    return all(abs(wrap(miss - misses[0])) <= tolerance for miss in misses)
+    apart = [wrap(miss - misses[0]) for miss in misses]  # some common turn takes all of them within the tolerance
+    return max(apart) - min(apart) <= 2 * tolerance
 
 
 def _tree(
