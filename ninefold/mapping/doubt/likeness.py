@@ -3,7 +3,8 @@
 Two nodes can be one place under a shift k, exit x of the one being exit x + k of the other, when they have as many exits and
 the headings agree within the tolerance: with a compass as they are, without one once some common turn is taken off. Where
 both walk an exit they must have walked it alike: with a compass as many whole turns, without one as far round, within twice
-the tolerance. Exits that some chain of such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
+the tolerance. Exits that some chain of such shifts makes one are of one *kind*: whatever map explains the walk, exits of
+different kinds are different.
 """
 
 from __future__ import annotations
