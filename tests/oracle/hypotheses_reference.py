@@ -9,7 +9,7 @@ when some turn of one of them brings all headings within the tolerance. Two legs
 their whole turns do; without a compass, when their net turns do within twice the tolerance, as two readings make a turn.
 
 A face turns as the stars of the first visits say, and the legs walked first. With a compass that is a whole number of turns.
-Without one it is one within the tolerance for every corner and every leg, and in any case within half a turn.
+Without one it is one within the tolerance for every corner and every leg, and by less than half a turn.
 """
 
 from __future__ import annotations
@@ -253,7 +253,7 @@ class Merging:
     def _whole(self, angle: float, steps: int) -> int | None:
         """The number of turns of a face, or None if it is none."""
         number = round(angle / tau)
-        within = 1e-6 if self.story.compass else min(steps * self.story.tolerance + EPSILON, pi)
+        within = 1e-6 if self.story.compass else min(steps * self.story.tolerance + EPSILON, pi - 1e-6)
         return number if abs(angle - tau * number) <= within else None
 
 
