@@ -4,8 +4,8 @@ Nothing is clever here. Places grow along the walk; a way that is known is follo
 any free exit of an old one. What comes out is judged whole: by the genus, counting orbits, and by the turning of its faces.
 
 A visit that folding alone makes an earlier one is not looked at again: the lists of exits compared are those of the first
-visits, and the legs compared those that led there. Two lists of exits agree when their headings do, within the tolerance; without a compass,
-when some turn of one of them brings all headings within the tolerance. Two legs along one way agree when
+visits, and the legs compared those that led there. Two lists of exits agree when their headings do, within the tolerance;
+without a compass, when some turn of one of them brings all headings within the tolerance. Two legs along one way agree when
 their whole turns do; without a compass, when their net turns do within twice the tolerance, as two readings make a turn.
 
 A face turns as the stars of the first visits say, and the legs walked first. With a compass that is a whole number of turns.
@@ -15,6 +15,7 @@ Without one it is one within the tolerance for every corner and every leg, and b
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import pi, tau
 from typing import NamedTuple
 
@@ -55,13 +56,14 @@ class Story:
             if isinstance(event, Samples):
                 yaws += event.yaw
                 continue
-            assert isinstance(event, Visit) and event.exits is not None
+            assert isinstance(event, Visit)
+            assert event.exits is not None
             self.names.append(event.place)
             self.stars.append(sorted(heading.yaw for heading in event.exits))
             if len(self.stars) > 1:
                 self.out.append(nearest(self.stars[-2], yaws[0]))
                 self.back.append(nearest(self.stars[-1], yaws[-1] + pi))
-                self.turn.append(sum(wrapped(b - a) for a, b in zip(yaws, yaws[1:], strict=False)))
+                self.turn.append(sum(wrapped(b - a) for a, b in pairwise(yaws)))
             yaws = []
         self.first: list[int] = []
         """The first visit that folding alone makes the same."""
@@ -75,10 +77,10 @@ class Story:
         at, shift = 0, 0
         self.first = [0]
         for t in range(1, len(self)):
-            exit = (at, (self.out[t - 1] + shift) % len(self.stars[at]))
-            if exit not in leads:
-                leads[exit], leads[t, self.back[t]] = (t, self.back[t]), exit
-            at, back = leads[exit]
+            dart = (at, (self.out[t - 1] + shift) % len(self.stars[at]))
+            if dart not in leads:
+                leads[dart], leads[t, self.back[t]] = (t, self.back[t]), dart
+            at, back = leads[dart]
             shift = (back - self.back[t]) % len(self.stars[at])
             self.first.append(at)
 
@@ -139,24 +141,24 @@ class Merging:
             yield from self._at(0, 0, None)
             return
         here = self.place[-1]
-        exit = (here, (story.out[t - 1] + self.shift[-1]) % self._degree(here))
-        if exit in self.leads:
-            place, back = self.leads[exit]
+        dart = (here, (story.out[t - 1] + self.shift[-1]) % self._degree(here))
+        if dart in self.leads:
+            place, back = self.leads[dart]
             if len(story.stars[t]) == self._degree(place):
-                yield from self._at(place, (back - story.back[t]) % self._degree(place), exit)
+                yield from self._at(place, (back - story.back[t]) % self._degree(place), dart)
             return
-        yield from self._at(len(self.members), 0, exit)
+        yield from self._at(len(self.members), 0, dart)
         for place in range(len(self.members)):
             if len(story.stars[t]) != self._degree(place):
                 continue
             for back in range(self._degree(place)):
-                if (place, back) not in self.leads and (place, back) != exit:
-                    yield from self._at(place, (back - story.back[t]) % self._degree(place), exit)
+                if (place, back) not in self.leads and (place, back) != dart:
+                    yield from self._at(place, (back - story.back[t]) % self._degree(place), dart)
 
     def _degree(self, place: int) -> int:
         return len(self.story.stars[self.members[place][0][0]])
 
-    def _at(self, place: int, shift: int, exit: tuple[int, int] | None) -> Iterator[Quotient]:
+    def _at(self, place: int, shift: int, dart: tuple[int, int] | None) -> Iterator[Quotient]:
         """The next visit is of this place, which its first exit tells."""
         story, t = self.story, len(self.place)
         fresh = story.first[t] == t
@@ -165,67 +167,62 @@ class Merging:
             for other, moved in self.members[place]:
                 if not story.alike(t, other, (shift - moved) % len(story.stars[t])):
                     return
-        end = (place, (story.back[t] + shift) % len(story.stars[t])) if exit is not None else None
-        leg = None
-        if fresh and exit is not None:
+        ends: tuple[tuple[int, int], ...] = ()
+        if dart is not None:
+            ends = dart, (place, (story.back[t] + shift) % len(story.stars[t]))
+        legs: tuple[Leg, ...] = ()
+        if fresh and dart is not None:
             before = story.first[t - 1]
-            out = self._own_exit(before, exit)
-            leg = Leg(before, out, t, story.back[t], story.turn[t])
-            if not all(story.legs_agree(other, leg) for other in self.legs.get(exit, ())):
+            leg = Leg(before, self._own_exit(before, dart), t, story.back[t], story.turn[t])
+            if not all(story.legs_agree(other, leg) for other in self.legs.get(dart, ())):
                 return
+            legs = leg, Leg(leg.after, leg.back, leg.before, leg.out, -leg.turn)
+        laid = bool(ends) and dart not in self.leads
         if made:
             self.members.append([])
         if fresh:
             self.members[place].append((t, shift))
-        laid = exit is not None and exit not in self.leads
         if laid:
-            assert exit is not None and end is not None
-            self.leads[exit], self.leads[end] = end, exit
-        if leg is not None:
-            assert exit is not None and end is not None
-            back = Leg(leg.after, leg.back, leg.before, leg.out, -leg.turn)
-            self.legs.setdefault(exit, []).append(leg)
-            self.legs.setdefault(end, []).append(back)
+            self.leads |= {ends[0]: ends[1], ends[1]: ends[0]}
+        for end, leg in zip(ends, legs, strict=False):
+            self.legs.setdefault(end, []).append(leg)
         self.place.append(place)
         self.shift.append(shift)
         yield from self.quotients()
         self.shift.pop()
         self.place.pop()
-        if leg is not None:
-            assert exit is not None and end is not None
-            self.legs[exit].pop()
+        for end, _ in zip(ends, legs, strict=False):
             self.legs[end].pop()
         if laid:
-            assert exit is not None and end is not None
-            del self.leads[exit], self.leads[end]
+            del self.leads[ends[0]], self.leads[ends[1]]
         if fresh:
             self.members[place].pop()
         if made:
             self.members.pop()
 
-    def _own_exit(self, visit: int, exit: tuple[int, int]) -> int:
-        shift = next(moved for other, moved in self.members[exit[0]] if other == visit)
-        return (exit[1] - shift) % len(self.story.stars[visit])
+    def _own_exit(self, visit: int, dart: tuple[int, int]) -> int:
+        shift = next(moved for other, moved in self.members[dart[0]] if other == visit)
+        return (dart[1] - shift) % len(self.story.stars[visit])
 
     def judged(self) -> Verdict:
         """Count the genus and the turning of what was walked."""
         orbits = []
         left = set(self.leads)
         while left:
-            begin = exit = min(left)
+            begin = dart = min(left)
             angle, stubs, steps = 0.0, False, 0
             while True:
-                left.remove(exit)
+                left.remove(dart)
                 steps += 2
-                angle += self._turn(exit)
-                place, back = self.leads[exit]
+                angle += self._turn(dart)
+                place, back = self.leads[dart]
                 x = (back - 1) % self._degree(place)
                 while (place, x) not in self.leads:
                     stubs, x = True, (x - 1) % self._degree(place)
                 star = self.story.stars[self.members[place][0][0]]
                 angle += pi - ((star[back] - star[x]) % tau if x != back else tau)
-                exit = (place, x)
-                if exit == begin:
+                dart = (place, x)
+                if dart == begin:
                     break
             orbits.append((angle, stubs, steps))
         faces = len(orbits) or 1
@@ -238,15 +235,15 @@ class Merging:
         torus = closed and not planar and all(turn == 1 for turn, _ in turns)
         return Verdict(planar, weak, strict, closed, torus)
 
-    def _turn(self, exit: tuple[int, int]) -> float:
+    def _turn(self, dart: tuple[int, int]) -> float:
         """The turn along the way out of an exit, by the leg that was first, as the first visits' exits have it."""
-        leg = self.legs[exit][0]
+        leg = self.legs[dart][0]
         if not self.story.compass:
             return leg.turn
-        end = self.leads[exit]
-        place = self.members[exit[0]][0][0], self.members[end[0]][0][0]
+        end = self.leads[dart]
+        place = self.members[dart[0]][0][0], self.members[end[0]][0][0]
         settled = self.story.settled(leg)
-        out = wrapped(self.story.stars[place[0]][exit[1]] - self.story.stars[leg.before][leg.out])
+        out = wrapped(self.story.stars[place[0]][dart[1]] - self.story.stars[leg.before][leg.out])
         back = wrapped(self.story.stars[place[1]][end[1]] - self.story.stars[leg.after][leg.back])
         return settled + back - out
 
@@ -267,7 +264,12 @@ class Verdict(NamedTuple):
     torus: bool
 
 
-def all_quotients(walk: Walk) -> dict[Quotient, Verdict]:
-    """Every way of merging visits, and what is to be said of it. Exponential."""
+def all_quotients(walk: Walk, *, most: int | None = None) -> dict[Quotient, Verdict] | None:
+    """Every way of merging visits, and what is to be said of it; None if there are more than so many. Exponential."""
     merging = Merging(Story(walk))
-    return {quotient: merging.judged() for quotient in merging.quotients()}
+    found = {}
+    for quotient in merging.quotients():
+        found[quotient] = merging.judged()
+        if most is not None and len(found) > most:
+            return None
+    return found

@@ -62,7 +62,7 @@ class Quotient(NamedTuple):
     """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group
     of nodes that must be one place, or -1."""
     way: NDArray[np.int64]
-    """(N K, 5): other node, exit there, kind; microradians that its edge can turn; edges of the tree from here on that way."""
+    """(N K, 5): other node, exit there, kind; microradians that its edge can turn; edges of the tree out that way."""
     angle: NDArray[np.float64]
     """(N K, 2): heading, net turn."""
     alike: NDArray[np.int64]

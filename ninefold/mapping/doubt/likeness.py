@@ -129,28 +129,30 @@ def _shifts(tree: WalkTree) -> NDArray[np.int64]:
 
 
 def _walked_alike(tree: WalkTree, nodes: NDArray[np.int64], x: int, y: int) -> NDArray[np.bool_]:
-    """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); True where one is not walked."""
-    first, second = (tree.other[nodes, exit] >= 0 for exit in (x, y))
-    agree = ~(first[:, None] & second[None, :])
+    """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); so where one is not walked."""
+    first, second = np.flatnonzero(tree.other[nodes, x] >= 0), np.flatnonzero(tree.other[nodes, y] >= 0)
+    agree = np.ones((nodes.size, nodes.size), np.bool_)
     n, m = nodes[first], nodes[second]
-    if not n.size or not m.size:
-        return agree
-    off = tree.turn[m, y][None, :] - tree.turn[n, x][:, None]
     if tree.compass:
-        there, here = (_settled(tree, *exit) for exit in ((m, y), (n, x)))
-        off = there[0][None, :] - here[0][:, None]
-        for end, sign in ((1, 1), (2, -1)):
-            moved = there[end][None, :] - here[end][:, None]
-            off -= sign * (moved - TAU * np.round(moved / TAU))
-    agree[np.ix_(first, second)] = np.abs(off) <= (np.pi if tree.compass else 2 * tree.tolerance + EPSILON)
+        off = _moved(_settled(tree, m, y), _settled(tree, n, x))
+        far = _moved(tree.heading[tree.other[m, y], tree.back[m, y]], tree.heading[tree.other[n, x], tree.back[n, x]])
+        near = _moved(tree.heading[m, y], tree.heading[n, x])
+        off += near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
+        agree[np.ix_(first, second)] = np.abs(off) < np.pi
+    else:
+        agree[np.ix_(first, second)] = np.abs(_moved(tree.turn[m, y], tree.turn[n, x])) <= 2 * tree.tolerance + EPSILON
     return agree
 
 
-def _settled(tree: WalkTree, n: NDArray[np.int64], x: int) -> tuple[NDArray[np.float64], ...]:
-    """Return the turn along the way out of an exit as the headings at its ends have it, and those of the far and near end."""
-    near, far, turn = tree.heading[n, x], tree.heading[tree.other[n, x], tree.back[n, x]], tree.turn[n, x]
-    miss = far + np.pi - near - turn
-    return turn + miss - TAU * np.round(miss / TAU), far, near
+def _settled(tree: WalkTree, n: NDArray[np.int64], x: int) -> NDArray[np.float64]:
+    """Return the turn along the way out of an exit as the headings at its two ends have it."""
+    turn = tree.turn[n, x]
+    miss = tree.heading[tree.other[n, x], tree.back[n, x]] + np.pi - tree.heading[n, x] - turn
+    return np.asarray(turn + miss - TAU * np.round(miss / TAU))
+
+
+def _moved(second: NDArray[np.float64], first: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(second[None, :] - first[:, None])
 
 
 def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:

@@ -67,15 +67,15 @@ class QuotientSearch:
         self._state = _quotient(tree, alike, closed=closed, turning=turning, most_places=most_places)
         if fails is not None:
             self._state.node[:, kernels.FAILS] = fails
-        count, width = tree.heading.shape
+        count = tree.n_nodes
         self._control = np.zeros(6, np.int64)
         self._control[kernels.GOING_DOWN] = 1
         self._frame = np.zeros((count + 2, 5), np.int64)
         self._choice = np.empty((count + 2) * (int(tree.degree.sum()) + 2), np.int64)  # pages not used take no memory
         self._best = np.zeros(self._state.option.size, np.int64)
         place = kernels.place_made(self._state, root)
-        self._possible = bool(kernels.put(self._state, root, place, 0))
-        if not self._possible:
+        possible = kernels.put(self._state, root, place, 0) and alike.shifts.diagonal().all()  # a node differs from itself
+        if not possible:
             self._control[kernels.DONE] = 1
 
     @property
