@@ -27,6 +27,7 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.claims import Claim, Claims, Rejection, claims
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Again",
     "Candidate",
+    "Claim",
+    "Claims",
     "Closure",
     "Dart",
     "Doubt",
@@ -64,6 +67,7 @@ __all__ = [
     "PlaneMap",
     "Point",
     "Region",
+    "Rejection",
     "Samples",
     "Set",
     "SimulatedWorld",
@@ -74,6 +78,7 @@ __all__ = [
     "bridges",
     "build",
     "circular_mean",
+    "claims",
     "cut_vertices",
     "estimate",
     "explore",
@@ -87,6 +92,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.claims": ("Claim", "Claims", "Rejection", "claims"),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),

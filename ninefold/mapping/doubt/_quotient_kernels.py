@@ -297,11 +297,16 @@ def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
     met = contour(q, stub)
     whole = q.turned[met] - np.pi
     found = 0
-    if may_be_new:
+    end = -1
+    if q.node[m, 1] >= 0:  # no tree, where claims made nodes one: what lies beyond may be placed already
+        end = q.node[m, 1] * width + (back + q.node[m, 2]) % degree
+    elif may_be_new:
         q.option[0] = -1
         found = 1
     for j in range(met):
         other = q.stub[j]
+        if end >= 0 and other != end:
+            continue
         w = other // width
         if q.place[w, 0] != degree:
             continue
