@@ -13,11 +13,14 @@ proofs.
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
+from math import pi
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from ..heading import TAU
 from .likeness import can_be_one
 
 if TYPE_CHECKING:
@@ -69,10 +72,10 @@ class Clash(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Core:
-    """Assertions that cannot hold together, none of them superfluous, by their numbers; and the clash they end in."""
+    """Assertions that cannot hold together, by their numbers; and the clash they end in, if they end in one."""
 
     members: tuple[int, ...]
-    clash: Clash
+    clash: Clash | None
 
 
 class _Step(NamedTuple):
@@ -107,6 +110,8 @@ class Congruence:
         self._degree: list[int] = tree.degree.tolist()
         self._other: list[list[int]] = tree.other.tolist()
         self._back: list[list[int]] = tree.back.tolist()
+        self._heading: list[list[float]] = tree.heading.tolist()
+        self._allowed = tree.tolerance + 1e-12
         self.reset()
 
     def reset(self) -> None:
@@ -115,6 +120,7 @@ class Congruence:
         self._members: dict[int, list[tuple[int, int]]] = {}
         self._ways: dict[int, dict[int, tuple[int, int]]] = {}
         self._named: dict[int, int] = {}
+        self._spans: dict[int, list[tuple[float, float]]] = {}
         self._above: dict[int, tuple[int, _Step]] = {}
         self.clash: Clash | None = None
         self.because: frozenset[int] = frozenset()
@@ -147,14 +153,14 @@ class Congruence:
         return self.clash is None
 
     def _merged(self, one: Assertion, step: _Step) -> bool:
-        todo = [(one, step)]
+        todo = deque([(one, step)])  # nearest consequences first: reasons are shorter then
         while todo:
-            (n, m, shift), why = todo.pop()
+            (n, m, shift), why = todo.popleft()
             if not self._merge(n, m, shift, why, todo):
                 return False
         return True
 
-    def _merge(self, n: int, m: int, shift: int, why: _Step, todo: list[tuple[Assertion, _Step]]) -> bool:
+    def _merge(self, n: int, m: int, shift: int, why: _Step, todo: deque[tuple[Assertion, _Step]]) -> bool:
         """Merge the sets of two nodes; put on the list what follows."""
         (a, at_a), (b, at_b) = self.place_of(n), self.place_of(m)
         degree = self._degree[n]
@@ -166,7 +172,9 @@ class Congruence:
                 return self._clashes(Clash("twice", n, m, 0, shift % degree), n, m, why)
             return True
         members, others = self._members.get(a, [(a, 0)]), self._members.get(b, [(b, 0)])
-        unlike = self._unlike(members, others, offset, degree)
+        spans = self._together(a, b, offset) if self._tree.compass else []
+        fits = self._tree.compass and all(high - low <= self._allowed for low, high in spans)
+        unlike = None if fits else self._unlike(a, b, offset)
         p, q = self._named.get(a, a), self._named.get(b, b)
         name, called = self._tree.names[p], self._tree.names[q]
         if unlike is None and name is not None and called is not None and name != called:
@@ -177,6 +185,8 @@ class Congruence:
             return False
         if len(members) < len(others):
             a, b, members, others, offset = b, a, others, members, (-offset) % degree if degree else 0
+            spans = self._together(a, b, offset) if self._tree.compass else []
+        self._spans[a] = spans
         # now the set of b goes into that of a: its exit z is exit z - offset there
         back = (-offset) % degree if degree else 0
         moved = [(q, (at + back) % degree if degree else 0) for q, at in others]
@@ -207,13 +217,13 @@ class Congruence:
             self._ways[root] = ways
         return ways
 
-    def _unlike(
-        self, members: list[tuple[int, int]], others: list[tuple[int, int]], offset: int, degree: int
-    ) -> Clash | None:
+    def _unlike(self, a: int, b: int, offset: int) -> Clash | None:
+        """Return two nodes of two sets that cannot be one, exit z of the first set being exit z + offset of the second."""
+        degree = self._degree[a]
         if not degree:
             return None
-        p, at_p = np.array(members, np.int64).T
-        q, at_q = np.array(others, np.int64).T
+        p, at_p = np.array(self._members.get(a, [(a, 0)]), np.int64).T
+        q, at_q = np.array(self._members.get(b, [(b, 0)]), np.int64).T
         i, j = np.repeat(np.arange(p.size), q.size), np.tile(np.arange(q.size), p.size)
         shift = (at_p[i] + offset - at_q[j]) % degree
         good = can_be_one(self._tree, p[i], q[j], shift)
@@ -221,6 +231,21 @@ class Congruence:
             return None
         k = int(good.argmin())
         return Clash("exits", int(p[i[k]]), int(q[j[k]]), 0, int(shift[k]))
+
+    def _together(self, a: int, b: int, offset: int) -> list[tuple[float, float]]:
+        """Return by how much the headings of two sets differ from those of the first node of the first, exit by exit."""
+        mine, other = self._spans_of(a), self._spans_of(b)
+        ours, theirs = self._heading[a], self._heading[b]
+        degree = self._degree[a]
+        found = []
+        for z in range(degree):
+            y = (z + offset) % degree
+            miss = (theirs[y] - ours[z] + pi) % TAU - pi
+            found.append((min(mine[z][0], other[y][0] + miss), max(mine[z][1], other[y][1] + miss)))
+        return found
+
+    def _spans_of(self, root: int) -> list[tuple[float, float]]:
+        return self._spans.get(root) or [(0.0, 0.0)] * self._degree[root]
 
     def _look_for_ways_back(self) -> None:
         """Look for a way that ends in the exit it begins with."""
@@ -292,8 +317,13 @@ class Congruence:
         return steps[: up[at]] + more
 
 
-def core_of(congruence: Congruence, assertions: dict[int, Assertion]) -> Core | None:
+def core_of(congruence: Congruence, assertions: dict[int, Assertion], *, tries: int | None = None) -> Core | None:
     """Return assertions that cannot hold together, none superfluous; None if all can, and then they are asserted.
+
+    Parameters
+    ----------
+    tries
+        How often at most to try to do without some; then some of those returned may be superfluous.
 
     Notes
     -----
@@ -302,16 +332,22 @@ def core_of(congruence: Congruence, assertions: dict[int, Assertion]) -> Core | 
     congruence.reset()
     if congruence.assert_all(assertions.items()):
         return None
-    needed: list[int] = []
-    left = sorted(congruence.because)
+    left = [k for k in assertions if k in congruence.because]
     clash = congruence.clash
-    while left:
-        one = left.pop()
+    needed: set[int] = set()
+    size = max(1, len(left) // 2)
+    while left and tries != 0:
+        tries = None if tries is None else tries - 1
+        part, rest = left[:size], left[size:]
+        wanted = needed.union(rest)
         congruence.reset()
-        if congruence.assert_all((k, assertions[k]) for k in [*needed, *left]):
-            needed.append(one)
-            continue
-        clash = congruence.clash
-        left = [k for k in left if k in congruence.because]
-    assert clash is not None
-    return Core(tuple(sorted(needed)), clash)
+        if not congruence.assert_all((k, one) for k, one in assertions.items() if k in wanted):
+            left = [k for k in rest if k in congruence.because]
+            clash = congruence.clash
+            size = max(1, min(2 * size, len(left)))
+        elif len(part) == 1:
+            needed.update(part)
+            left = rest
+        else:
+            size = len(part) // 2
+    return Core(tuple(sorted(needed.union(left))), clash)

@@ -54,6 +54,9 @@ __all__ = ["Claim", "Claims", "Rejection", "claims"]
 BUDGET = 60.0
 """Seconds that the search for maps may take, if nothing else is asked for."""
 
+TRIES = 20
+"""How often to try to make a set of claims that clash smaller before the cheapest to reject are chosen."""
+
 LISTED = 6
 """Claims that a reason lists."""
 
@@ -276,7 +279,7 @@ class _Judging:
             self._owner += [number] * len(shifts)
             self._readings.append(list(range(first, len(self._assertions))))
         self._congruence = Congruence(tree, _facts(tree))
-        self._cores: list[tuple[tuple[int, ...], Clash | None]] = []
+        self._cores: list[Core] = []
 
     def judged(self) -> Claims:
         """Alternate between the cheapest choice and what speaks against it."""
@@ -288,12 +291,12 @@ class _Judging:
             return Claims(tree, self._said, (), None, exact=False, contradiction=Contradiction(visits[0], visits[1], text))
         while True:
             chosen = self._choice()
-            found: list[tuple[tuple[int, ...], Clash | None]] = [(core.members, core.clash) for core in self._clashing(chosen)]
+            found = self._clashing(chosen)
             one: Hypothesis | bool | None = None
             if not found:
                 one = self._map(chosen.values())
                 if one is False and chosen:
-                    found = [(self._blamed(list(chosen.values())), None)]
+                    found = [Core(self._blamed(list(chosen.values())), None)]
             if not found:
                 told = one if not isinstance(one, bool) else None
                 return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None)
@@ -302,19 +305,48 @@ class _Judging:
     def _choice(self) -> dict[int, int]:
         if not self._cores and all(self._readings):
             return {claim: means[0] for claim, means in enumerate(self._readings)}
-        return cheapest_choice([one.score for one in self._said], self._readings, [members for members, _ in self._cores])
+        return cheapest_choice([one.score for one in self._said], self._readings, [core.members for core in self._cores])
 
-    def _clashing(self, chosen: dict[int, int]) -> Iterable[Core]:
-        """Return sets of chosen assertions that clash, no two with one in common."""
-        left = {k: self._assertions[k] for k in sorted(chosen.values(), key=lambda k: -self._said[self._owner[k]].score)}
+    def _clashing(self, chosen: dict[int, int]) -> list[Core]:
+        """Return sets of chosen assertions that clash, enough of them to convict those that clash with all the rest."""
+        order = sorted(chosen.values(), key=lambda k: -self._score(k))
+        left = {k: self._assertions[k] for k in order}
         found: list[Core] = []
-        while True:
-            core = core_of(self._congruence, left)
-            if core is None:
-                return found
+        while (core := core_of(self._congruence, left, tries=TRIES)) is not None:
             found.append(core)
             for k in core.members:
                 del left[k]
+        suspects = []
+        for k in [k for core in found for k in core.members]:
+            if self._congruence.assert_all([(k, self._assertions[k])]):
+                left[k] = self._assertions[k]
+                continue
+            suspects.append(k)
+            self._congruence.reset()
+            self._congruence.assert_all(left.items())
+        return found + [core for k in suspects for core in self._against(k, left)]
+
+    def _against(self, suspect: int, agreed: dict[int, Assertion]) -> list[Core]:
+        """Return clashes of a suspect with others that agree, no two with another in common, until rejecting it is cheaper."""
+        left = dict(agreed)
+        left[suspect] = self._assertions[suspect]
+        found: list[Core] = []
+        cost = 0.0
+        while cost <= self._score(suspect):
+            core = core_of(self._congruence, left, tries=TRIES)
+            if core is None:
+                break
+            found.append(core)
+            others = [k for k in core.members if k != suspect]
+            if not others:
+                break
+            cost += min(self._score(k) for k in others)
+            for k in others:
+                del left[k]
+        return found
+
+    def _score(self, assertion: int) -> float:
+        return self._said[self._owner[assertion]].score
 
     def _map(self, chosen: Iterable[int]) -> Hypothesis | bool | None:
         """Return a legal map that holds assertions, False if there is none, None if time is up."""
@@ -344,29 +376,30 @@ class _Judging:
     # -- words -------------------------------------------------------------------------------------------------------------
 
     def _rejections(self, chosen: dict[int, int]) -> tuple[Rejection, ...]:
-        kept = set(chosen.values())
         found = []
         for number, one in enumerate(self._said):
             if number in chosen:
                 continue
-            against: set[int] = set()
-            clash: Clash | None = None
-            for reading in self._readings[number]:
-                members, clash = self._why(reading, kept)
-                against |= {self._owner[k] for k in members if k != reading}
             if not self._readings[number]:
                 n, m = int(self._tree.node_of[one.a]), int(self._tree.node_of[one.b])
                 found.append(Rejection(one, (), (one.a, one.b), self._unlike(n, m, one.a, one.b)))
                 continue
+            cores = [self._why(reading, chosen) for reading in self._readings[number]]
+            against = {self._owner[k] for core in cores for k in core.members} - {number}
             others = tuple(self._said[k] for k in sorted(against))
+            clash = cores[0].clash
             visits = None if clash is None else (self._visit(clash.node), self._visit(clash.other))
             found.append(Rejection(one, others, visits, self._reason(others, clash)))
         return tuple(found)
 
-    def _why(self, reading: int, kept: set[int]) -> tuple[tuple[int, ...], Clash | None]:
-        """Return the core that speaks against a rejected assertion, all others of it kept if there is one such."""
-        cores = [core for core in self._cores if reading in core[0]]
-        return min(cores, key=lambda core: (len(set(core[0]) - kept), core[1] is None, len(core[0])))
+    def _why(self, reading: int, chosen: dict[int, int]) -> Core:
+        """Return what speaks against a rejected assertion: others that are kept, if these alone convict it."""
+        kept = {k: self._assertions[k] for k in chosen.values()}
+        core = core_of(self._congruence, kept | {reading: self._assertions[reading]})
+        if core is not None:
+            return core
+        known = set(kept)
+        return min((one for one in self._cores if reading in one.members), key=lambda one: len(set(one.members) - known))
 
     def _reason(self, others: tuple[Claim, ...], clash: Clash | None) -> str:
         given = ""
