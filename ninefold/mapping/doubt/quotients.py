@@ -77,8 +77,9 @@ class QuotientSearch:
         count, width = tree.heading.shape
         self._control = np.zeros(6, np.int64)
         self._control[kernels.GOING_DOWN] = 1
-        self._frame = np.zeros((count + 2, 5), np.int64)
-        self._choice = np.zeros((count + 2) * (count * width + 2) if count < 64 else count * 256 + 4096, np.int64)
+        depth = max(count, int((tree.other >= 0).sum()) // 2) + 2  # more ways than nodes, where claims made nodes one
+        self._frame = np.zeros((depth, 5), np.int64)
+        self._choice = np.zeros(depth * (count * width + 2) if count < 64 else depth * 256 + 4096, np.int64)
         self._best = np.zeros(self._state.option.size, np.int64)
         place = kernels.place_made(self._state, root)
         self._possible = bool(kernels.put(self._state, root, place, 0))
@@ -163,7 +164,7 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
         limit,
         np.zeros(count, np.int64),
         np.zeros((int(alike.group.max(initial=-1)) + 1, 2), np.int64),
-        np.zeros((8 * count + 16, 3), np.int64),
+        np.zeros((max(8 * count, int(walked.sum())) + 16, 3), np.int64),
         np.zeros(places * width + 2, np.int64),
         np.zeros(places * width + 2),
         np.zeros(places * width + 2, np.int64),
