@@ -30,11 +30,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ninefold._wording import counted, quoted
+from ninefold.encodings.choice import cheapest_choice
 from ninefold.errors import BadInput
 
 from ..robot.units import unit_of
 from ..robot.walk import Walk
-from ._choice import cheapest_choice
+
 from ._congruence import Assertion, Congruence, Core, core_of
 from ._held import some_map
 from .likeness import can_be_one
