@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["LOST", "ODDS", "JudgedClosures", "RejectedClosure", "judge_closures"]
+__all__ = ["LOST", "ODDS", "JudgedClosures", "RejectedClosure", "judge_closures", "judge_of"]
 
 ODDS = 1e-9
 """Misses less likely than this convict."""
@@ -91,8 +91,17 @@ class _Frames(NamedTuple):
     shift: NDArray[np.complex128]
     turn: Floats
 
-    def __getitem__(self, which: object) -> _Frames:  # type: ignore[override]
-        return _Frames(self.shift[which], self.turn[which])  # type: ignore[index]
+    def at(self, which: NDArray[np.int64]) -> _Frames:
+        return _Frames(self.shift[which], self.turn[which])
+
+
+class _Closures(NamedTuple):
+    """Closures from pose `a` to pose `b`: (C,) each, measurement, covariance (C, 3, 3)."""
+
+    a: NDArray[np.int64]
+    b: NDArray[np.int64]
+    closure: _Frames
+    covariance: Floats
 
 
 class _Loops(NamedTuple):
@@ -116,21 +125,15 @@ def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedCl
     Complexity O(V + C squared) for C closures, array code, and the choice of the fewest to reject, exponential at worst.
     """
     chosen = graph.closures
-    world, spread, chain = _dead_reckoning(graph)
-    a, b, closure, covariance = _closures(graph, chosen, chain)
-    alone = chain[a] == chain[b]
     limit = _limit(1 if headings_only else 3)
-    judged = _Judge(world, spread, a, b, closure, covariance, headings_only=headings_only)
+    judged = judge_of(graph, headings_only=headings_only)
     every = judged.alone()
-    singles = alone & (every.ratio > limit)
-    heard = alone & np.isfinite(every.ratio)
+    singles = every.ratio > limit
+    heard = np.isfinite(every.ratio)
     cores: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(singles)]
     clashes: list[list[int]] = [[] for _ in range(chosen.size)]
     for k in range(chosen.size - 1):
         others = np.arange(k + 1, chosen.size)
-        others = others[(chain[a[others]] == chain[a[k]]) & (chain[b[others]] == chain[b[k]])]
-        if not others.size:
-            continue
         ratio = judged.with_another(k, others).ratio
         heard[k] |= bool(np.isfinite(ratio).any())
         heard[others[np.isfinite(ratio)]] = True
@@ -152,10 +155,16 @@ def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedCl
     return JudgedClosures(graph, tuple(rejected), int(np.count_nonzero(~heard)))
 
 
+def judge_of(graph: PoseGraph, *, headings_only: bool = False) -> Judge:
+    """Return what measures the loops of a graph."""
+    world, spread, chain = _dead_reckoning(graph)
+    return Judge(world, spread, chain, _closures(graph, graph.closures), headings_only=headings_only)
+
+
 def _reason(
     graph: PoseGraph,
     chosen: NDArray[np.int64],
-    judged: _Judge,
+    judged: Judge,
     k: int,
     every: _Loops,
     clashing: list[int],
@@ -194,58 +203,51 @@ def _limit(freedom: int) -> float:
     return 2.0 * float(gammainccinv(freedom / 2.0, ODDS))
 
 
-class _Judge:
-    """Loops of closures (n,), from pose `a` to pose `b`, and of odometry."""
+class Judge:
+    """Loops of closures, numbered as `PoseGraph.closures`, and of odometry. Loops that say nothing have NaN for a ratio."""
 
     def __init__(
-        self,
-        world: _Frames,
-        spread: Floats,
-        a: NDArray[np.int64],
-        b: NDArray[np.int64],
-        closure: _Frames,
-        covariance: Floats,
-        *,
-        headings_only: bool,
+        self, world: _Frames, spread: Floats, chain: NDArray[np.int64], closures: _Closures, *, headings_only: bool
     ) -> None:
-        self._world, self._spread, self._a, self._b = world, spread, a, b
-        self._closure, self._covariance, self._headings_only = closure, covariance, headings_only
+        self._world, self._spread, self._chain = world, spread, chain
+        self._a, self._b, self._closure, self._covariance = closures
+        self._headings_only = headings_only
 
     def alone(self) -> _Loops:
         """Return the loops of every closure with the odometry between its poses, (n,)."""
-        there = _after(_back(self._world[self._a]), self._world[self._b])
+        there = _after(_back(self._world.at(self._a)), self._world.at(self._b))
         home = _after(there, _back(self._closure))
-        covariance = _seen(_back(self._world[self._a]), self._between(self._a, self._b)) + _seen(there, self._covariance)
-        return self._loops(home, covariance)
+        covariance = _seen(_back(self._world.at(self._a)), self._between(self._a, self._b)) + _seen(there, self._covariance)
+        return self._loops(home, covariance, self._chain[self._a] == self._chain[self._b])
 
     def with_another(self, k: int, others: NDArray[np.int64]) -> _Loops:
         """Return the loops of a closure with others: there by odometry and the other, back by odometry and the one."""
         a, b = np.full(others.size, self._a[k]), np.full(others.size, self._b[k])
         c, d = self._a[others], self._b[others]
-        begin = _back(self._world[a])
-        there = _after(begin, self._world[c])
-        across = _after(there, self._closure[others])
-        frame = _after(across, _back(self._world[d]))
-        at_end = _after(frame, self._world[b])
-        home = _after(at_end, _back(self._closure[np.full(others.size, k)]))
+        begin = _back(self._world.at(a))
+        there = _after(begin, self._world.at(c))
+        across = _after(there, self._closure.at(others))
+        frame = _after(across, _back(self._world.at(d)))
+        at_end = _after(frame, self._world.at(b))
+        home = _after(at_end, _back(self._closure.at(np.full(others.size, k))))
         stretches = _seen(begin, self._between(a, c)) + _seen(frame, self._between(d, b))
         low, high = np.maximum(np.minimum(a, c), np.minimum(b, d)), np.minimum(np.maximum(a, c), np.maximum(b, d))
         stretches[low < high] *= 2.0  # odometry in both: its errors may add up, and no sum has more than twice the variance
         measured = _seen(across, self._covariance[others]) + _seen(at_end, self._covariance[np.full(others.size, k)])
-        return self._loops(home, stretches + measured)
+        return self._loops(home, stretches + measured, (self._chain[a] == self._chain[c]) & (self._chain[b] == self._chain[d]))
 
     def _between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> Floats:
         """Return the covariance of the odometry between poses, seen from the frame where odometry begins."""
         return self._spread[np.maximum(a, b)] - self._spread[np.minimum(a, b)]
 
-    def _loops(self, home: _Frames, covariance: Floats) -> _Loops:
+    def _loops(self, home: _Frames, covariance: Floats, joined: NDArray[np.bool_]) -> _Loops:
         miss = np.stack([home.shift.real, home.shift.imag, (home.turn + pi) % (2 * pi) - pi], axis=1)
         if self._headings_only:
             ratio = miss[:, 2] ** 2 / covariance[:, 2, 2]
         else:
             ratio = np.einsum("ni,ni->n", miss, np.linalg.solve(covariance, miss[:, :, None])[:, :, 0])
-        lost = covariance[:, 2, 2] > LOST**2
-        return _Loops(miss, covariance, np.where(lost, np.nan, ratio))
+        heard = joined & (covariance[:, 2, 2] <= LOST**2)
+        return _Loops(miss, covariance, np.where(heard, ratio, np.nan))
 
 
 def _after(a: _Frames, b: _Frames) -> _Frames:
@@ -287,14 +289,12 @@ def _dead_reckoning(graph: PoseGraph) -> tuple[_Frames, Floats, NDArray[np.int64
     return world, np.cumsum(_seen(world, noise), axis=0), np.cumsum(~joined)
 
 
-def _closures(
-    graph: PoseGraph, chosen: NDArray[np.int64], chain: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], _Frames, Floats]:
-    """Return the closures from the earlier pose to the later: poses, measurement, covariance."""
+def _closures(graph: PoseGraph, chosen: NDArray[np.int64]) -> _Closures:
+    """Return the closures from the earlier pose to the later."""
     a, b = graph.first[chosen], graph.second[chosen]
     measured = _Frames(graph.measured[chosen, 0] + 1j * graph.measured[chosen, 1], graph.measured[chosen, 2])
     back, seen = _back(measured), _seen(measured, graph.covariance[chosen])
     turned = a > b
     closure = _Frames(np.where(turned, back.shift, measured.shift), np.where(turned, back.turn, measured.turn))
     covariance = np.where(turned[:, None, None], seen, graph.covariance[chosen])
-    return np.minimum(a, b), np.maximum(a, b), closure, covariance
+    return _Closures(np.minimum(a, b), np.maximum(a, b), closure, covariance)

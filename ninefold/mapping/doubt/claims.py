@@ -225,7 +225,11 @@ def _claims_of(pairs: ArrayLike | Iterable[tuple[int, int, float]], threshold: f
     if threshold is not None:
         return _claims_of_matrix(pairs, threshold, visits)
     found = []
-    for number, one in enumerate(pairs):  # type: ignore[arg-type]
+    try:
+        listed = list(pairs)  # type: ignore[arg-type]
+    except TypeError:
+        raise BadInput(f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}") from None
+    for number, one in enumerate(listed):
         try:
             a, b, score = one
             first, second, cost = int(a), int(b), float(score)
