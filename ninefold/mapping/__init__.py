@@ -27,6 +27,7 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.claims import Claim, Claims, Rejection, claims
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Again",
     "Candidate",
+    "Claim",
+    "Claims",
     "Closure",
     "Dart",
     "Doubt",
@@ -67,6 +70,7 @@ __all__ = [
     "PlaneMap",
     "Point",
     "Region",
+    "Rejection",
     "Samples",
     "Set",
     "SimulatedWorld",
@@ -77,6 +81,7 @@ __all__ = [
     "bridges",
     "build",
     "circular_mean",
+    "claims",
     "cut_vertices",
     "estimate",
     "explore",
@@ -91,6 +96,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.claims": ("Claim", "Claims", "Rejection", "claims"),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
