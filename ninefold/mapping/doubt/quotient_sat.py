@@ -1,0 +1,201 @@
+"""Every plane map that explains a folded walk, found by a SAT solver.
+
+One variable a pair of nodes that can be one place; clauses for what holds of every quotient (`_node_pairs`). A solution is a
+quotient, and its faces are walked: one that turns neither +1 nor -1, two that turn -1, or none at all that does (a torus) is no
+plane map. Each such fault is a *cut*, a clause over the few pairs of nodes that made those faces: "not all of these pairs, or
+somebody walked an exit in a corner". Cuts are added until a solution is a map, which is then excluded in its turn, until there
+is no solution.
+
+In a map of one piece turning of +1 for all faces but one, and -1 for that, implies genus 0 (Gauss and Bonnet): nothing else
+has to be cut.
+
+Long walks in irregular worlds, where few places look alike, yield to this and not to the search of `quotients`; grids the
+reverse.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from time import monotonic
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ninefold.encodings.sat import open_solver
+from ninefold.errors import BadInput
+
+from ._node_pairs import clauses, node_pairs, walkers
+from ._quotient_faces import Face, faces, members, steps
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from .likeness import Likeness
+    from .walk_tree import WalkTree
+
+__all__ = ["Cut", "QuotientSat"]
+
+
+class Cut(NamedTuple):
+    """A clause that no plane map violates, and the faces that show it: none for a torus, which has no outer face.
+
+    Attributes
+    ----------
+    clause
+        Literals.
+    faces
+        One face that turns neither +1 nor -1, or two that turn -1, as (node, exit, turns).
+    """
+
+    clause: tuple[int, ...]
+    faces: tuple[Face, ...]
+
+
+class QuotientSat:
+    """A question to a solver that can be stopped and gone on with.
+
+    Parameters
+    ----------
+    tree, alike
+        The walk, and what of it can be the same. With a compass.
+    closed
+        Whether no exit may be left untravelled.
+    most_places
+        Places of a map at most, or None.
+
+    Attributes
+    ----------
+    found
+        How many maps were found so far.
+    done
+        Whether these are all.
+    cuts
+        Those made so far.
+    """
+
+    def __init__(self, tree: WalkTree, alike: Likeness, *, closed: bool = False, most_places: int | None = None) -> None:
+        if not tree.compass:
+            raise BadInput("a walk without a compass has no SAT model here: its closing residue depends on more than pairs of nodes")
+        self.tree, self.alike = tree, alike
+        self.pairs = node_pairs(tree, alike)
+        self.closed = closed
+        self.most_places = most_places
+        self.found = 0
+        self.done = False
+        self.cuts: list[Cut] = []
+        self.rounds = 0
+        self._solver = open_solver()
+        for _, block in clauses(tree, alike, self.pairs, closed=closed):
+            self._solver.add_clauses(block)
+
+    def close(self) -> None:
+        """Free the solver."""
+        self._solver.close()
+
+    def more(self, seconds: float) -> NDArray[np.int64]:
+        """Go on for some time; return the maps found, (B, N, 2): place and shift of every node.
+
+        Notes
+        -----
+        Every solution costs what the solver takes and O(N K) for its faces.
+        """
+        until = monotonic() + seconds
+        out: list[NDArray[np.int64]] = []
+        while not self.done and (left := until - monotonic()) > 0:
+            quotient = self.solved(seconds=left)
+            if quotient is None:
+                break
+            self.exclude(quotient)
+            if self.most_places is None or np.unique(quotient[:, 0]).size <= self.most_places:
+                self.found += 1
+                out.append(quotient)
+        return np.array(out, np.int64).reshape(len(out), self.tree.n_nodes, 2)
+
+    def solved(self, assumed: Sequence[int] = (), *, seconds: float) -> NDArray[np.int64] | None:
+        """Return a map of those not excluded in which some literals hold, (N, 2); None if there is none or time is spent.
+
+        Without literals `done` tells which; with them, `refuted` does.
+        """
+        until = monotonic() + seconds
+        self.refuted = False
+        while (left := until - monotonic()) > 0:
+            answer = self._solver.solve(assumed, budget=left)
+            if answer is None:
+                return None
+            if not answer:
+                self.refuted = True
+                self.done = self.done or not assumed
+                return None
+            self.rounds += 1
+            quotient = self._quotient(self._solver.model())
+            cuts = self._cuts(quotient)
+            if not cuts:
+                return quotient
+            self.cuts += cuts
+            self._solver.add_clauses([cut.clause for cut in cuts])
+        return None
+
+    def exclude(self, quotient: NDArray[np.int64]) -> None:
+        """Leave a map out from now on."""
+        self._solver.add_clause(self.excluding(quotient))
+
+    def excluding(self, quotient: NDArray[np.int64]) -> list[int]:
+        """Return the clause that says that a quotient is not that one.
+
+        It tells by every node's pair with the lowest node of its place, and by every lowest node's pairs with all before it.
+        """
+        place, shift = self._lowest(quotient)
+        clause: list[int] = []
+        for n, lead in enumerate(place.tolist()):
+            if lead != n:
+                clause.append(-self.pairs.table[n, lead, int(shift[n])])
+                continue
+            span = slice(self.pairs.start[n], self.pairs.start[n + 1])
+            clause += self.pairs.variable[span][self.pairs.partner[span] < n].tolist()
+        return clause
+
+    def _lowest(self, quotient: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return place and shift of every node against the lowest node of its place."""
+        _, first, place = np.unique(quotient[:, 0], return_index=True, return_inverse=True)
+        lead = first[place]
+        return lead, (quotient[:, 1] - quotient[lead, 1]) % np.maximum(self.tree.degree, 1)
+
+    def _quotient(self, model: list[int]) -> NDArray[np.int64]:
+        """Return place, as its lowest node, and shift of every node."""
+        pairs = self.pairs
+        quotient = np.zeros((self.tree.n_nodes, 2), np.int64)
+        quotient[:, 0] = np.arange(self.tree.n_nodes)
+        literals = np.array(model, np.int64)
+        true = literals[(literals > 0) & (literals <= pairs.n_variables)] - 1
+        true = true[np.lexsort((pairs.first[true], pairs.second[true]))[::-1]]  # the lowest partner is written last
+        first, second = pairs.first[true], pairs.second[true]
+        quotient[second, 0] = first
+        quotient[second, 1] = -pairs.shift[true] % np.maximum(self.tree.degree[second], 1)
+        return quotient
+
+    def _cuts(self, quotient: NDArray[np.int64]) -> list[Cut]:
+        """Return the cuts that a quotient violates; none for a map."""
+        place, shift = quotient[:, 0], quotient[:, 1]
+        around = faces(self.tree, place, shift)
+        outer = [face for face in around if face.turns == -1]
+        wrong = [face for face in around if abs(face.turns) != 1]
+        if not wrong and len(outer) == 1:
+            return []
+        if not wrong and not outer:
+            return [Cut(tuple(self.excluding(quotient)), ())]
+        at = members(self.tree, place, shift)
+        clause = {face: self._made_by([(s.node, s.exit, s.walker, s.walked, s.corner) for s in steps(at, face.node, face.exit)]) for face in [*wrong, *outer]}
+        cuts = [Cut(tuple(sorted(clause[face])), (face,)) for face in wrong]
+        return cuts + [Cut(tuple(sorted(clause[a] | clause[b])), (a, b)) for a, b in combinations(outer, 2)]
+
+    def _made_by(self, around: list[tuple[int, int, int, int, tuple[int, ...]]]) -> set[int]:
+        """Return literals of which one holds if a face is not as it was walked."""
+        literals: set[int] = set()
+        for node, exit, walker, walked, corner in around:
+            if node != walker:
+                literals.add(-self.pairs.table[node, walker, (walked - exit) % int(self.tree.degree[node])])
+            for x in corner:
+                literals.update(walkers(self.tree, self.pairs, node, x))
+        return literals
