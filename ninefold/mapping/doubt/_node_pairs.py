@@ -157,11 +157,19 @@ def _covered(tree: WalkTree, pairs: NodePairs) -> list[list[int]]:
     ]
 
 
-def walkers(tree: WalkTree, pairs: NodePairs, n: int, exit: int) -> list[int]:
-    """Return the variables of which one holds if an exit that a node did not walk is walked by another of its place."""
+def walkers(
+    tree: WalkTree, pairs: NodePairs, n: int, exit: int, inside: NDArray[np.bool_] | None = None
+) -> list[int]:
+    """Return the variables of which one holds if an exit that a node did not walk is walked by another of its place.
+
+    With `inside`, only ways between those nodes count.
+    """
     span = slice(pairs.start[n], pairs.start[n + 1])
-    there = (exit + pairs.along[span]) % tree.degree[n]
-    walked = tree.other[pairs.partner[span], there] >= 0
+    partner = pairs.partner[span]
+    beyond = tree.other[partner, (exit + pairs.along[span]) % tree.degree[n]]
+    walked = beyond >= 0
+    if inside is not None:
+        walked &= inside[partner] & inside[beyond]
     found: list[int] = pairs.variable[span][walked].tolist()
     return found
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..heading import TAU
+from ._part_kernels import Part, smallest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from .walk_tree import WalkTree
 
-__all__ = ["Face", "Step", "faces", "steps"]
+__all__ = ["Face", "Members", "Step", "faces", "is_plane", "members", "room", "smallest_part", "steps"]
 
 
 class Face(NamedTuple):
@@ -45,8 +46,10 @@ class Step(NamedTuple):
     corner: tuple[int, ...]
 
 
-def faces(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> list[Face]:
-    """Return the faces of a quotient.
+def faces(
+    tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], inside: NDArray[np.bool_] | None = None
+) -> list[Face]:
+    """Return the faces of a quotient, or of the part of it that some nodes make.
 
     Parameters
     ----------
@@ -54,13 +57,15 @@ def faces(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) ->
         (N,) the lowest node of the place of every node, whose exits are those of the place.
     shift
         (N,) exit x of a node is exit x + shift of its place.
+    inside
+        (N,) the nodes of a connected part of the tree: only ways between them are looked at.
 
     Notes
     -----
     Complexity O(N K), array code.
     """
     width = tree.heading.shape[1]
-    n, x = np.nonzero(tree.other >= 0)
+    n, x = _ways(tree, inside)
     if not n.size:
         return [Face(0, 0, -1)]
     m, y = tree.other[n, x], tree.back[n, x]
@@ -92,6 +97,15 @@ def faces(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) ->
     ]
 
 
+def _ways(tree: WalkTree, inside: NDArray[np.bool_] | None) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the ways walked between some nodes, as nodes and exits."""
+    walked = tree.other >= 0
+    if inside is not None:
+        walked &= inside[:, None] & inside[tree.other]
+    n, x = np.nonzero(walked)
+    return n, x
+
+
 def _orbits(after: NDArray[np.int64]) -> NDArray[np.int64]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -111,10 +125,12 @@ class Members(NamedTuple):
     walkers: dict[int, list[tuple[int, int]]]
 
 
-def members(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> Members:
-    """List who walked what. O(N K)."""
+def members(
+    tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], inside: NDArray[np.bool_] | None = None
+) -> Members:
+    """List who walked what, of some nodes or all. O(N K)."""
     width = tree.heading.shape[1]
-    n, x = np.nonzero(tree.other >= 0)
+    n, x = _ways(tree, inside)
     here = place[n] * width + (x + shift[n]) % tree.degree[n]
     walkers: dict[int, list[tuple[int, int]]] = {}
     for key, node, exit in zip(here.tolist(), n.tolist(), x.tolist(), strict=True):
@@ -168,8 +184,49 @@ def _onward(quotient: Members, node: int, exit: int) -> Iterator[Step]:
             corner.append(x)
             x = (x - 1) % degree
         who = quotient.walkers[base + (x + shift) % degree]
-        if tree.other[there, x] >= 0:
+        if (there, x) in who:
             node, exit = there, x
         else:
             node, exit = min(who, key=lambda one: (abs(one[0] - there), one[0]))
         yield Step(there, x, node, exit, tuple(corner))
+
+
+def is_plane(around: list[Face]) -> bool:
+    """Whether one face turns -1 and all others +1."""
+    turns = [face.turns for face in around]
+    return turns.count(-1) == 1 and turns.count(1) == len(turns) - 1
+
+
+def room(tree: WalkTree) -> Part:
+    """Lay out a tree for `smallest_part`."""
+    count, width = tree.heading.shape
+    node = np.zeros((count, 5), np.int64)
+    node[:, 0] = tree.degree
+    return Part(
+        np.stack([tree.other.reshape(-1), tree.back.reshape(-1)], axis=1),
+        np.stack([np.nan_to_num(tree.heading).reshape(-1), tree.turn.reshape(-1)], axis=1),
+        node,
+        np.zeros(count, np.int64),
+        np.zeros((count * width, 3), np.int64),
+        np.zeros(count * width, np.int64),
+        np.zeros(1, np.int64),
+    )
+
+
+def smallest_part(part: Part, place: NDArray[np.int64], shift: NDArray[np.int64], root: int) -> NDArray[np.int64]:
+    """Return the nodes of a connected part of the tree whose quotient is not plane, none if the whole is.
+
+    What is plane stays so when ways are taken away, as long as it is connected. So of parts that grow node by node from a root
+    the first that is not plane is found by bisection, again from the node that came last, and then leaves are left out until
+    none can be.
+
+    Notes
+    -----
+    Complexity O((log N + size of the part) N K).
+    """
+    part.node[:, 1] = place
+    part.node[:, 2] = shift
+    form = smallest.for_work(200 * place.size)
+    if not form(part, root):
+        return np.zeros(0, np.int64)
+    return np.flatnonzero(part.node[:, 3])

@@ -25,7 +25,7 @@ from ninefold.encodings.sat import open_solver
 from ninefold.errors import BadInput
 
 from ._node_pairs import clauses, node_pairs, walkers
-from ._quotient_faces import Face, faces, members, steps
+from ._quotient_faces import Face, Step, faces, members, room, smallest_part, steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from .walk_tree import WalkTree
 
 __all__ = ["Cut", "QuotientSat"]
+
+ROOTS = 4
+"""Parts of a quotient that are cut at once."""
 
 
 class Cut(NamedTuple):
@@ -86,6 +89,9 @@ class QuotientSat:
         self.done = False
         self.cuts: list[Cut] = []
         self.rounds = 0
+        self._next_root = 0
+        self._room = room(tree)
+        self._stride = max(1, int(0.382 * tree.n_nodes))
         self._solver = open_solver()
         for _, block in clauses(tree, alike, self.pairs, closed=closed):
             self._solver.add_clauses(block)
@@ -176,26 +182,40 @@ class QuotientSat:
         return quotient
 
     def _cuts(self, quotient: NDArray[np.int64]) -> list[Cut]:
-        """Return the cuts that a quotient violates; none for a map."""
+        """Return cuts that a quotient violates; none for a map."""
         place, shift = quotient[:, 0], quotient[:, 1]
-        around = faces(self.tree, place, shift)
-        outer = [face for face in around if face.turns == -1]
-        wrong = [face for face in around if abs(face.turns) != 1]
-        if not wrong and len(outer) == 1:
-            return []
-        if not wrong and not outer:
-            return [Cut(tuple(self.excluding(quotient)), ())]
-        at = members(self.tree, place, shift)
-        clause = {face: self._made_by([(s.node, s.exit, s.walker, s.walked, s.corner) for s in steps(at, face.node, face.exit)]) for face in [*wrong, *outer]}
-        cuts = [Cut(tuple(sorted(clause[face])), (face,)) for face in wrong]
-        return cuts + [Cut(tuple(sorted(clause[a] | clause[b])), (a, b)) for a, b in combinations(outer, 2)]
+        cuts: dict[tuple[int, ...], Cut] = {}
+        for _ in range(ROOTS):
+            root = self._next_root
+            self._next_root = (root + self._stride) % self.tree.n_nodes
+            part = smallest_part(self._room, place, shift, root)
+            if not part.size:
+                return []
+            cut = self._cut(place, shift, part)
+            cuts[cut.clause] = cut
+        return list(cuts.values())
 
-    def _made_by(self, around: list[tuple[int, int, int, int, tuple[int, ...]]]) -> set[int]:
+    def _cut(self, place: NDArray[np.int64], shift: NDArray[np.int64], part: NDArray[np.int64]) -> Cut:
+        """Return the shortest cut that shows that a part of a quotient is not plane."""
+        inside = np.zeros(self.tree.n_nodes, np.bool_)
+        inside[part] = True
+        around = faces(self.tree, place, shift, inside)
+        at = members(self.tree, place, shift, inside)
+        clause = {face: self._made_by(steps(at, face.node, face.exit), inside) for face in around}
+        outer = [face for face in around if face.turns == -1]
+        choices = [(face,) for face in around if abs(face.turns) != 1] + list(combinations(outer, 2))
+        if not choices:
+            choices = [tuple(around)]
+        cuts = [Cut(tuple(sorted(set().union(*(clause[face] for face in which)))), which) for which in choices]
+        return min(cuts, key=lambda cut: (len(cut.clause), cut))
+
+    def _made_by(self, around: list[Step], inside: NDArray[np.bool_]) -> set[int]:
         """Return literals of which one holds if a face is not as it was walked."""
         literals: set[int] = set()
-        for node, exit, walker, walked, corner in around:
-            if node != walker:
-                literals.add(-self.pairs.table[node, walker, (walked - exit) % int(self.tree.degree[node])])
-            for x in corner:
-                literals.update(walkers(self.tree, self.pairs, node, x))
+        for step in around:
+            if step.node != step.walker:
+                along = (step.walked - step.exit) % int(self.tree.degree[step.node])
+                literals.add(-self.pairs.table[step.node, step.walker, along])
+            for x in step.corner:
+                literals.update(walkers(self.tree, self.pairs, step.node, x, inside))
         return literals
