@@ -1,10 +1,11 @@
 """Every plane map that explains a folded walk, found by a SAT solver.
 
 One variable a pair of nodes that can be one place; clauses for what holds of every quotient (`_node_pairs`). A solution is a
-quotient, and its faces are walked: one that turns neither +1 nor -1, two that turn -1, or none at all that does (a torus) is no
-plane map. Each such fault is a *cut*, a clause over the few pairs of nodes that made those faces: "not all of these pairs, or
-somebody walked an exit in a corner". Cuts are added until a solution is a map, which is then excluded in its turn, until there
-is no solution.
+quotient, and its faces are walked: where one turns neither +1 nor -1, or two turn -1, or none (a torus), it is no plane map. Every
+connected part of a plane map is one, so the fault is looked for in the smallest part of the walk that shows it. It gives a
+*cut*, a clause over the few pairs of nodes that made the faces of that part what they are: "not all of these pairs, or somebody
+walked an exit in a corner, or the walk went round twice". Cuts are added until a solution is a map, which is then excluded in its
+turn, until there is no solution.
 
 In a map of one piece turning of +1 for all faces but one, and -1 for that, implies genus 0 (Gauss and Bonnet): nothing else
 has to be cut.
@@ -42,18 +43,21 @@ ROOTS = 4
 
 
 class Cut(NamedTuple):
-    """A clause that no plane map violates, and the faces that show it: none for a torus, which has no outer face.
+    """A clause that no plane map violates, and what shows it.
 
     Attributes
     ----------
     clause
         Literals.
     faces
-        One face that turns neither +1 nor -1, or two that turn -1, as (node, exit, turns).
+        One face that turns neither +1 nor -1, or two that turn -1, or all faces of a torus.
+    part
+        The nodes of the part of the tree whose quotient has those faces.
     """
 
     clause: tuple[int, ...]
     faces: tuple[Face, ...]
+    part: tuple[int, ...]
 
 
 class QuotientSat:
@@ -201,12 +205,17 @@ class QuotientSat:
         inside[part] = True
         around = faces(self.tree, place, shift, inside)
         at = members(self.tree, place, shift, inside)
-        clause = {face: self._made_by(steps(at, face.node, face.exit), inside) for face in around}
-        outer = [face for face in around if face.turns == -1]
-        choices = [(face,) for face in around if abs(face.turns) != 1] + list(combinations(outer, 2))
-        if not choices:
-            choices = [tuple(around)]
-        cuts = [Cut(tuple(sorted(set().union(*(clause[face] for face in which)))), which) for which in choices]
+        walk = {face: steps(at, face.node, face.exit) for face in around}
+        made = {face: self._made_by(walk[face], inside) for face in around}
+        wrong, outer = [face for face in around if abs(face.turns) != 1], [face for face in around if face.turns == -1]
+        found: list[tuple[set[int], tuple[Face, ...]]] = []
+        for face in wrong:
+            found.append((made[face] | self._fewer_rounds(walk[face], face.turns), (face,)))
+        for face, other in combinations(outer, 2):
+            found.append((made[face] | made[other] | self._one_face(walk[face], walk[other]), (face, other)))
+        if not found:
+            found.append((set().union(*made.values()), tuple(around)))
+        cuts = [Cut(tuple(sorted(clause)), which, tuple(part.tolist())) for clause, which in found]
         return min(cuts, key=lambda cut: (len(cut.clause), cut))
 
     def _made_by(self, around: list[Step], inside: NDArray[np.bool_]) -> set[int]:
@@ -219,3 +228,27 @@ class QuotientSat:
             for x in step.corner:
                 literals.update(walkers(self.tree, self.pairs, step.node, x, inside))
         return literals
+
+    def _fewer_rounds(self, around: list[Step], turns: int) -> set[int]:
+        """Return literals of which one holds if a walk goes several times round a face that turns +1 or -1.
+
+        That many times it turns, and so two ways that far apart along it are one way.
+        """
+        rounds = abs(turns)
+        if rounds < 2 or len(around) % rounds:
+            return set()
+        far = len(around) // rounds
+        return min((self._one_way(around[i], [around[i + far]]) for i in range(len(around) - far)), key=len)
+
+    def _one_face(self, around: list[Step], other: list[Step]) -> set[int]:
+        """Return literals of which one holds if two walks go round one face."""
+        return min((self._one_way(step, other) for step in around), key=len)
+
+    def _one_way(self, step: Step, others: list[Step]) -> set[int]:
+        """Return literals of which one holds if a way is one of some others."""
+        found = set()
+        for one in others:
+            degree = int(self.tree.degree[step.walker])
+            if degree == self.tree.degree[one.walker]:
+                found.add(self.pairs.table.get((step.walker, one.walker, (one.walked - step.walked) % degree), 0))
+        return found - {0}
