@@ -22,6 +22,7 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .atlas.atlas import Atlas
+    from .atlas.guess import Guess
     from .atlas.records import Provenance, Statement
     from .maps import read_map
     from .networks.network_file import read_network, write_network
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Atlas",
+    "Guess",
     "Provenance",
     "Source",
     "Statement",
@@ -49,6 +51,7 @@ __getattr__, __dir__ = attach(
     __name__,
     {
         "atlas.atlas": ("Atlas",),
+        "atlas.guess": ("Guess",),
         "atlas.records": ("Provenance", "Statement"),
         "maps": ("read_map",),
         "networks.network_file": ("read_network", "write_network"),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import Health, PlaneMap, Set
+    from ninefold.mapping import Doubt, Health, PlaneMap, Set
 
     from .bearing_rigidity import Rigidity
 
@@ -210,6 +210,7 @@ class Drawing(Immutable):
         rigidity: bool | Rigidity = False,
         health: bool | Health = False,
         belief: ArrayLike | None = None,
+        doubts: Iterable[Doubt] = (),
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -235,12 +236,17 @@ class Drawing(Immutable):
         belief
             (V,) how likely a robot is at each place, such as ``Localizer.probabilities``: the likely places are marked, and
             the likeliest named.
+        doubts
+            Of an estimate whose likeliest map this is: the places where something is undecided get numbered rings, and the
+            sentences stand below.
 
         Raises
         ------
         BadInput, DifferentMaps
             For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map,
-            `rigidity` or `health` for a map without headings, or a belief that is none.
+            `rigidity` or `health` for a map without headings, a belief that is none, or what is no doubt.
+        UnknownName
+            For doubts about a place that the map does not have.
         """
         from .svg import render
 
@@ -254,6 +260,7 @@ class Drawing(Immutable):
             rigidity=rigidity,
             health=health,
             belief=belief,
+            doubts=doubts,
         )
 
     def save(self, path: str | Path, **options: Any) -> None:

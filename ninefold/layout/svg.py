@@ -8,7 +8,8 @@ triangle; the picture shears it to an equilateral one, which keeps straight line
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
 the rest contradicts broad and on top; or by how well headings and turns agree (`health_scale`), the worst broadest and on
 top. Highlighted lines and outlines then lie below the edges, and reach out on both sides. By request too, the places where a
-robot can be are marked (`beliefs`), larger and stronger the likelier they are.
+robot can be are marked (`beliefs`), larger and stronger the likelier they are, and what is undecided about a map that was
+estimated, with sentences below (`doubt_marks`).
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
 from .beliefs import belief_of
+from .doubt_marks import DoubtMark, doubt_marks, doubt_sentences, doubt_words, ring
 from .health_scale import health_colouring, health_of, health_scale
 from .labels import place_labels, text_width
 from .leg_classes import rigidity_colouring, rigidity_of
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import Health, Set
+    from ninefold.mapping import Doubt, Health, Set
 
     from .bearing_rigidity import Rigidity
     from .beliefs import Belief
@@ -70,6 +72,7 @@ def render(
     rigidity: bool | Rigidity = False,
     health: bool | Health = False,
     belief: ArrayLike | None = None,
+    doubts: Iterable[Doubt] = (),
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -79,12 +82,20 @@ def render(
     sets = named_sets(drawing, highlight)
     colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
     seen = belief_of(drawing.plane, belief)
+    said = tuple(doubts)
+    marks = doubt_marks(drawing.plane, said)
     page = _Page(drawing, width, title)
     if colouring is not None:
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets), legs="" if colouring is None else colouring.told, belief=seen is not None),
+        _defs(
+            theme,
+            len(sets),
+            legs="" if colouring is None else colouring.told,
+            belief=seen is not None,
+            doubts=bool(marks),
+        ),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
@@ -96,16 +107,17 @@ def render(
         *_vertices(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
         *([] if seen is None else _spots(page, seen)),
+        *_doubted(page, marks),
     ]
     if shown or (seen is not None and seen.names):
         names: dict[int, str] = dict(enumerate(drawing.plane.vertex_names)) if shown else {}
         least = 7.0 if any(isinstance(x, Point) for _, x in sets) else page.dot
-        radii: dict[int, float] = {}
+        radii: dict[int, float] = {mark.vertex: _ring_radius(page) for mark in marks}
         if seen is not None:
             names |= {spot.vertex: seen.text(spot) for spot in seen.spots} if shown else seen.names
-            radii = {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
+            radii |= {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
         body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
-    legend, height = _legend(page, sets, colouring, seen)
+    legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said))
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -206,7 +218,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int, *, legs: str, belief: bool) -> str:
+def _defs(theme: str, used: int, *, legs: str, belief: bool, doubts: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -215,7 +227,8 @@ def _defs(theme: str, used: int, *, legs: str, belief: bool) -> str:
         if _HATCH[k] is not None
     )
     return (
-        f"<style>{style_sheet(theme, used, legs=legs, belief=belief)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+        f"<style>{style_sheet(theme, used, legs=legs, belief=belief, doubts=doubts)}</style>"
+        f"{f'<defs>{hatches}</defs>' if hatches else ''}"
     )
 
 
@@ -329,6 +342,25 @@ def _point(page: _Page, k: int, x: Point) -> list[str]:
     ]
 
 
+def _ring_radius(page: _Page) -> float:
+    return max(7.0, page.dot + 3.0)
+
+
+def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
+    """Return a numbered ring for every place where something is undecided."""
+    at = page.place(page.drawing.points).tolist()
+    radius = _ring_radius(page)
+    rings, numbers = [], []
+    for mark in marks:
+        x, y = at[mark.vertex]
+        number = ",".join(map(str, mark.numbers))
+        tip = _escaped("; ".join(mark.words))
+        rings.append(f"<g><title>{tip}</title>{ring(mark.kind, x, y, radius)}</g>")
+        numbers.append(f'<text x="{x + radius + 1:.1f}" y="{y - radius + 2:.1f}">{number}</text>')
+    look = 'font-size="11.5" font-weight="600" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    return [*rings, f'<g class="name" {look}>{"".join(numbers)}</g>'] if marks else []
+
+
 def _spots(page: _Page, seen: Belief) -> list[str]:
     """Return the marks of where a robot can be, the likeliest on top."""
     at = page.place(page.drawing.points[[spot.vertex for spot in seen.spots]]).tolist()
@@ -363,7 +395,12 @@ def _names(page: _Page, named: Mapping[int, str], radii: NDArray[np.float64]) ->
 
 
 def _legend(
-    page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | None, seen: Belief | None
+    page: _Page,
+    sets: list[tuple[str, Set]],
+    colouring: LegColouring | None,
+    seen: Belief | None,
+    marks: tuple[DoubtMark, ...],
+    doubted: list[str],
 ) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
@@ -373,6 +410,7 @@ def _legend(
     if colouring is not None and colouring.told == "rigidity":
         entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
     entries += [] if seen is None else [(partial(_spot_swatch, step), words) for step, words in seen.entries]
+    entries += [(partial(_ring_swatch, kind), words) for kind, words in doubt_words(marks)]
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
@@ -394,7 +432,15 @@ def _legend(
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
+    for sentence in doubted:
+        for line in _wrapped(sentence, (page.width - 2 * _PAD) / (12 * 0.58)):
+            parts.append(f'<text class="ink" x="{_PAD:g}" y="{y + 6:.1f}" font-size="12">{_escaped(line)}</text>')
+            y += 16
     return parts, y + 6
+
+
+def _ring_swatch(kind: str, x: float, y: float) -> str:
+    return ring(kind, x + 11, y, 7.0)
 
 
 def _leg_swatch(name: str, x: float, y: float) -> str:

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from .reading import Reading
     from .ways import Bundle
 
-__all__ = ["Again", "Doubt", "again", "doubts_of"]
+__all__ = ["Again", "Doubt", "DoubtKind", "again", "doubts_of"]
+
+DoubtKind = Literal["order", "ways", "outer", "uncounted", "noise"]
+"""What a doubt is about; see `Doubt`."""
 
 MOST_PASSES = 200
 """Passes above which nobody is told how often to walk a way again."""
@@ -50,7 +53,7 @@ class Doubt:
         The doubt in words.
     """
 
-    kind: Literal["order", "ways", "outer", "uncounted", "noise"]
+    kind: DoubtKind
     places: tuple[str, ...]
     orders: tuple[tuple[str, ...], ...]
     text: str
