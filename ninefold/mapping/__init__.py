@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
+    from .doubt.hypotheses import Hypotheses, Hypothesis, hypotheses
     from .doubt.localizer import Candidate, Localizer, Move
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
@@ -56,6 +57,8 @@ __all__ = [
     "Follower",
     "Heading",
     "Health",
+    "Hypotheses",
+    "Hypothesis",
     "Line",
     "Localizer",
     "Mapper",
@@ -78,6 +81,7 @@ __all__ = [
     "estimate",
     "explore",
     "health",
+    "hypotheses",
     "locate",
     "shortest_path",
     "unwrap",
@@ -91,6 +95,7 @@ __getattr__, __dir__ = attach(
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
+        "doubt.hypotheses": ("Hypotheses", "Hypothesis", "hypotheses"),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),

@@ -2,8 +2,8 @@
 
 A *place* is a set of nodes that are one, with the exits of its first node. A *stub* is an exit of a place that has no mate
 yet. Deciding a stub means to say where the way behind it ends: at a new place, or at another stub of the same face, whose
-*contour* is walked clockwise from stub to stub. Whatever follows is folded in: the nodes beyond both exits become one, and so
-on. Every decision is taken back exactly.
+*contour* is walked clockwise from stub to stub. Whatever follows is folded in: the nodes beyond both exits become one, and
+so on. Every decision is taken back exactly.
 
 Arrays are in one named tuple, `Quotient`; columns have names below. Exit x of node n is ``n * K + x``, exit x of place w is
 ``w * K + x``. Angles are radians. All functions change the arrays they are given.
@@ -32,30 +32,35 @@ HEADING, TURN = 0, 1
 FIRST, SIGN_OF_PLACE, REFERENCE = 1, 2, 3
 # columns of `exit`: MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY
 MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY = 0, 1, 2, 3, 4
+# columns of `group`
+PLACED, PLACE_OF_GROUP = 0, 1
+# columns of `balance`
+HERE, SURPLUS, LACK = 0, 1, 2
 # columns of `kind`
 STUBS, ENDS, COMPONENT, SIDE = 0, 1, 2, 3
 # columns of `sign`, kinds of its exits after them
 UNITS_LEFT, DEMAND, DEGREE_OF_SIGN, KINDS = 0, 1, 2, 3
 # rows of `number`
 N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT = 0, 1, 2, 3, 4, 5
+# rows of `limit`
+LARGEST_MISS, MOST_PLACES = 0, 1
 # rows of `control`, how the search stands
 DEPTH, TOP, GOING_DOWN, N_DECISIONS, N_FOUND, DONE = 0, 1, 2, 3, 4, 5
 # columns of `frame`
 STUB, BOTTOM, TRAIL_BEFORE, PLACES_BEFORE, ENTERED_STUB = 0, 1, 2, 3, 4
 
+NONE = -1
 NOTHING = -2
-NEW_PLACE = -1
-FULL = 2 * np.pi
 MICRO = 1e-6
-WHOLE_WITHIN = 0.02
+"""Radians in a unit of `LENGTH` and `TURN_LEFT`, which are whole numbers so that they come back exactly."""
 
 
 class Quotient(NamedTuple):
     """The tree of a walk and a quotient in the making: N nodes, at most P places, K exits each, C kinds, S signatures."""
 
     node: NDArray[np.int64]
-    """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group of
-    nodes that must be one place, or -1."""
+    """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group
+    of nodes that must be one place, or -1."""
     way: NDArray[np.int64]
     """(N K, 4): other node, exit there, kind; microradians that its edge can turn."""
     angle: NDArray[np.float64]
@@ -112,13 +117,13 @@ def clockwise(q, x):  # type: ignore[no-untyped-def]
     width = q.exit.shape[0] // q.place.shape[0]
     if x % width:
         return x - 1
-    return x + q.place[x // width, 0] - 1
+    return x + q.place[x // width, DEGREE] - 1
 
 
 @kernel
 def corner(q, after, before):  # type: ignore[no-untyped-def]
     """Return the angle counter-clockwise from exit `before` to exit `after` of one place, in (0, 2 pi]."""
-    angle = (q.bearing[after, 0] - q.bearing[before, 0]) % (2 * np.pi)
+    angle = (q.bearing[after, HEADING] - q.bearing[before, HEADING]) % (2 * np.pi)
     if angle < 1e-9 or after == before:
         return 2 * np.pi
     return angle
@@ -128,18 +133,18 @@ def corner(q, after, before):  # type: ignore[no-untyped-def]
 def place_made(q, n):  # type: ignore[no-untyped-def]
     """Make a place with the exits of a node; return it. The node is not put there yet."""
     width = q.exit.shape[0] // q.place.shape[0]
-    w = q.number[0]
-    q.number[0] += 1
-    q.place[w, 0] = q.node[n, 0]
-    q.place[w, 1] = -1
-    q.place[w, 2] = q.node[n, 4]
-    q.place[w, 3] = n
-    for x in range(q.node[n, 0]):
+    w = q.number[N_PLACES]
+    q.number[N_PLACES] += 1
+    q.place[w, DEGREE] = q.node[n, DEGREE]
+    q.place[w, FIRST] = -1
+    q.place[w, SIGN_OF_PLACE] = q.node[n, SIGN]
+    q.place[w, REFERENCE] = n
+    for x in range(q.node[n, DEGREE]):
         e = w * width + x
-        q.exit[e, 0] = -1
-        q.exit[e, 1] = q.way[n * width + x, 2]
-        q.bearing[e, 0] = q.angle[n * width + x, 0]
-        q.kind[q.exit[e, 1], 0] += 1
+        q.exit[e, MATE] = -1
+        q.exit[e, KIND_OF_EXIT] = q.way[n * width + x, KIND]
+        q.bearing[e, HEADING] = q.angle[n * width + x, HEADING]
+        q.kind[q.exit[e, KIND_OF_EXIT], STUBS] += 1
     return w
 
 
@@ -157,49 +162,49 @@ def put(q, n, w, shift):  # type: ignore[no-untyped-def]
         w = q.queue[head, 1]
         shift = q.queue[head, 2]
         head += 1
-        if q.node[n, 1] >= 0:
-            if q.node[n, 1] != w or q.node[n, 2] != shift:
+        if q.node[n, PLACE] >= 0:
+            if q.node[n, PLACE] != w or q.node[n, SHIFT] != shift:
                 return False
             continue
-        degree = q.node[n, 0]
-        if q.place[w, 0] != degree:
+        degree = q.node[n, DEGREE]
+        if q.place[w, DEGREE] != degree:
             return False
-        m = q.place[w, 1]
+        m = q.place[w, FIRST]
         while m >= 0:
-            if degree > 0 and not (q.alike[n, m] >> ((shift - q.node[m, 2]) % degree)) & 1:
+            if degree > 0 and not (q.alike[n, m] >> ((shift - q.node[m, SHIFT]) % degree)) & 1:
                 return False
-            m = q.node[m, 3]
-        g = q.node[n, 7]
+            m = q.node[m, NEXT]
+        g = q.node[n, GROUP]
         if g >= 0:
-            if q.group[g, 0] > 0 and q.group[g, 1] != w:
+            if q.group[g, PLACED] > 0 and q.group[g, PLACE_OF_GROUP] != w:
                 return False
-            q.group[g, 0] += 1
-            q.group[g, 1] = w
-        q.node[n, 1] = w
-        q.node[n, 2] = shift
-        q.node[n, 3] = q.place[w, 1]
-        q.place[w, 1] = n
-        q.sign[q.node[n, 4], 0] -= q.node[n, 5]
-        q.trail[q.number[1]] = n
-        q.number[1] += 1
+            q.group[g, PLACED] += 1
+            q.group[g, PLACE_OF_GROUP] = w
+        q.node[n, PLACE] = w
+        q.node[n, SHIFT] = shift
+        q.node[n, NEXT] = q.place[w, FIRST]
+        q.place[w, FIRST] = n
+        q.sign[q.node[n, SIGN], UNITS_LEFT] -= q.node[n, UNITS]
+        q.trail[q.number[N_TRAIL]] = n
+        q.number[N_TRAIL] += 1
         for x in range(degree):
             e = n * width + x
-            m = q.way[e, 0]
+            m = q.way[e, OTHER]
             if m < 0:
                 continue
-            back = q.way[e, 1]
-            if q.node[m, 1] >= 0:
-                q.kind[q.way[e, 2], 1] -= 1
-                q.kind[q.way[m * width + back, 2], 1] -= 1
-                q.number[2] -= q.way[e, 3]
-            mate = q.exit[w * width + (x + shift) % degree, 0]
+            back = q.way[e, BACK]
+            if q.node[m, PLACE] >= 0:
+                q.kind[q.way[e, KIND], ENDS] -= 1
+                q.kind[q.way[m * width + back, KIND], ENDS] -= 1
+                q.number[TURN_LEFT] -= q.way[e, LENGTH]
+            mate = q.exit[w * width + (x + shift) % degree, MATE]
             if mate >= 0:
                 other = mate // width
-                if q.place[other, 0] != q.node[m, 0]:
+                if q.place[other, DEGREE] != q.node[m, DEGREE]:
                     return False
                 q.queue[tail, 0] = m
                 q.queue[tail, 1] = other
-                q.queue[tail, 2] = (mate % width - back) % q.node[m, 0]
+                q.queue[tail, 2] = (mate % width - back) % q.node[m, DEGREE]
                 tail += 1
     return True
 
@@ -208,21 +213,21 @@ def put(q, n, w, shift):  # type: ignore[no-untyped-def]
 def taken_back(q, mark):  # type: ignore[no-untyped-def]
     """Take nodes out of their places again until the trail is as long as it was."""
     width = q.exit.shape[0] // q.place.shape[0]
-    while q.number[1] > mark:
-        q.number[1] -= 1
-        n = q.trail[q.number[1]]
-        for x in range(q.node[n, 0]):
+    while q.number[N_TRAIL] > mark:
+        q.number[N_TRAIL] -= 1
+        n = q.trail[q.number[N_TRAIL]]
+        for x in range(q.node[n, DEGREE]):
             e = n * width + x
-            m = q.way[e, 0]
-            if m >= 0 and q.node[m, 1] >= 0:
-                q.kind[q.way[e, 2], 1] += 1
-                q.kind[q.way[m * width + q.way[e, 1], 2], 1] += 1
-                q.number[2] += q.way[e, 3]
-        if q.node[n, 7] >= 0:
-            q.group[q.node[n, 7], 0] -= 1
-        q.place[q.node[n, 1], 1] = q.node[n, 3]
-        q.node[n, 1] = -1
-        q.sign[q.node[n, 4], 0] += q.node[n, 5]
+            m = q.way[e, OTHER]
+            if m >= 0 and q.node[m, PLACE] >= 0:
+                q.kind[q.way[e, KIND], ENDS] += 1
+                q.kind[q.way[m * width + q.way[e, BACK], KIND], ENDS] += 1
+                q.number[TURN_LEFT] += q.way[e, LENGTH]
+        if q.node[n, GROUP] >= 0:
+            q.group[q.node[n, GROUP], PLACED] -= 1
+        q.place[q.node[n, PLACE], FIRST] = q.node[n, NEXT]
+        q.node[n, PLACE] = -1
+        q.sign[q.node[n, SIGN], UNITS_LEFT] += q.node[n, UNITS]
 
 
 @kernel
@@ -231,16 +236,16 @@ def folded(q, a, b):  # type: ignore[no-untyped-def]
     width = q.exit.shape[0] // q.place.shape[0]
     for _ in range(2):
         there = b // width
-        n = q.place[a // width, 1]
+        n = q.place[a // width, FIRST]
         while n >= 0:
-            x = (a % width - q.node[n, 2]) % q.node[n, 0]
-            m = q.way[n * width + x, 0]
+            x = (a % width - q.node[n, SHIFT]) % q.node[n, DEGREE]
+            m = q.way[n * width + x, OTHER]
             if m >= 0:
-                if q.node[m, 0] != q.place[there, 0]:
+                if q.node[m, DEGREE] != q.place[there, DEGREE]:
                     return False
-                if not put(q, m, there, (b % width - q.way[n * width + x, 1]) % q.node[m, 0]):
+                if not put(q, m, there, (b % width - q.way[n * width + x, BACK]) % q.node[m, DEGREE]):
                     return False
-            n = q.node[n, 3]
+            n = q.node[n, NEXT]
         a, b = b, a
     return True
 
@@ -249,12 +254,12 @@ def folded(q, a, b):  # type: ignore[no-untyped-def]
 def walked_from(q, stub):  # type: ignore[no-untyped-def]
     """Return an exit of a placed node whose way leads through this stub, as node * K + exit, or -1."""
     width = q.exit.shape[0] // q.place.shape[0]
-    n = q.place[stub // width, 1]
+    n = q.place[stub // width, FIRST]
     while n >= 0:
-        e = n * width + (stub % width - q.node[n, 2]) % q.node[n, 0]
-        if q.way[e, 0] >= 0:
+        e = n * width + (stub % width - q.node[n, SHIFT]) % q.node[n, DEGREE]
+        if q.way[e, OTHER] >= 0:
             return e
-        n = q.node[n, 3]
+        n = q.node[n, NEXT]
     return -1
 
 
@@ -275,13 +280,13 @@ def contour(q, stub):  # type: ignore[no-untyped-def]
         if x == stub:
             q.turned[met] = total + angle
             break
-        if q.exit[x, 0] < 0:
+        if q.exit[x, MATE] < 0:
             q.stub[met] = x
             q.turned[met] = total + angle
             met += 1
         else:
-            total += angle + q.bearing[x, 1]
-            before = q.exit[x, 0]
+            total += angle + q.bearing[x, TURN]
+            before = q.exit[x, MATE]
             x = before
     return met
 
@@ -290,10 +295,10 @@ def contour(q, stub):  # type: ignore[no-untyped-def]
 def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
     """Return how many ends the way through a stub can have; they are in `option`, -1 for a new place."""
     width = q.exit.shape[0] // q.place.shape[0]
-    m = q.way[walked, 0]
-    back = q.way[walked, 1]
-    turn = q.angle[walked, 1]
-    degree = q.node[m, 0]
+    m = q.way[walked, OTHER]
+    back = q.way[walked, BACK]
+    turn = q.angle[walked, TURN]
+    degree = q.node[m, DEGREE]
     met = contour(q, stub)
     whole = q.turned[met] - np.pi
     found = 0
@@ -303,16 +308,16 @@ def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
     for j in range(met):
         other = q.stub[j]
         w = other // width
-        if q.place[w, 0] != degree:
+        if q.place[w, DEGREE] != degree:
             continue
-        first = q.place[w, 1]
-        if not (q.alike[m, first] >> ((other % width - back - q.node[first, 2]) % degree)) & 1:
+        first = q.place[w, FIRST]
+        if not (q.alike[m, first] >> ((other % width - back - q.node[first, SHIFT]) % degree)) & 1:
             continue
-        miss = wrapped(q.bearing[other, 0] + np.pi - q.bearing[stub, 0] - turn)
-        if abs(miss) > q.limit[0]:
+        miss = wrapped(q.bearing[other, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
+        if abs(miss) > q.limit[LARGEST_MISS]:
             continue
         turns = (q.turned[j] - turn - miss) / (2 * np.pi)
-        if q.number[5] == 1:
+        if q.number[STRICT] == 1:
             nearest = int(np.rint(turns))
             if abs(turns - nearest) > 0.02:
                 continue
@@ -326,10 +331,10 @@ def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
 @kernel
 def places_possible(q, s):  # type: ignore[no-untyped-def]
     """Return how many places of a signature can still be made: ways left must cover every exit, and the stubs there are."""
-    most = (q.sign[s, 0] - q.sign[s, 1]) // ((q.sign[s, 2] + 1) // 2)
-    for x in range(q.sign[s, 2]):
-        k = q.sign[s, 3 + x]
-        spare = q.kind[k, 1] - q.kind[k, 0]
+    most = (q.sign[s, UNITS_LEFT] - q.sign[s, DEMAND]) // ((q.sign[s, DEGREE_OF_SIGN] + 1) // 2)
+    for x in range(q.sign[s, DEGREE_OF_SIGN]):
+        k = q.sign[s, KINDS + x]
+        spare = q.kind[k, ENDS] - q.kind[k, STUBS]
         if spare < most:
             most = spare
     return most
@@ -344,49 +349,49 @@ def demanded(q):  # type: ignore[no-untyped-def]
     """
     width = q.exit.shape[0] // q.place.shape[0]
     for s in range(q.sign.shape[0]):
-        q.sign[s, 1] = 0
-    for w in range(q.number[0]):
+        q.sign[s, DEMAND] = 0
+    for w in range(q.number[N_PLACES]):
         unwalked = 0
-        for x in range(q.place[w, 0]):
+        for x in range(q.place[w, DEGREE]):
             e = w * width + x
-            if q.exit[e, 0] < 0 and walked_from(q, e) < 0:
+            if q.exit[e, MATE] < 0 and walked_from(q, e) < 0:
                 unwalked += 1
-        q.sign[q.place[w, 2], 1] += (unwalked + 1) // 2
+        q.sign[q.place[w, SIGN_OF_PLACE], DEMAND] += (unwalked + 1) // 2
+    enough = True
     for s in range(q.sign.shape[0]):
-        if q.sign[s, 1] > q.sign[s, 0]:
-            return False
-    return True
+        enough = enough and q.sign[s, DEMAND] <= q.sign[s, UNITS_LEFT]
+    return enough
 
 
 @kernel
 def within_budget(q):  # type: ignore[no-untyped-def]
     """Return whether every face can still turn as it must.
 
-    A chain is the piece of a face between two stubs. An inner face of the whole map has 2 pi more positive turn than negative,
-    so what a chain has beyond 2 pi must be paid for by negative turn elsewhere in its region: by other chains there, by places
-    not made yet, or by edges not placed yet. And where ways join kinds of exits of two sides, the stubs of a region must be
-    balanced by places to come.
+    A chain is the piece of a face between two stubs. An inner face of the whole map has 2 pi more positive turn than
+    negative, so what a chain has beyond 2 pi must be paid for by negative turn elsewhere in its region: by other chains
+    there, by places not made yet, or by edges not placed yet. And where ways join kinds of exits of two sides, the stubs of
+    a region must be balanced by places to come.
     """
     width = q.exit.shape[0] // q.place.shape[0]
     sides = q.balance.shape[0]
-    possible = q.number[2] * 1e-6
+    possible = q.number[TURN_LEFT] * MICRO
     for s in range(q.sign.shape[0]):
         if q.bend[s] > 0:
             possible += max(places_possible(q, s), 0) * q.bend[s]
     for b in range(sides):
-        q.balance[b, 1] = 0
-        q.balance[b, 2] = 0
-    for w in range(q.number[0]):
-        for x in range(q.place[w, 0]):
-            q.exit[w * width + x, 2] = 0
+        q.balance[b, SURPLUS] = 0
+        q.balance[b, LACK] = 0
+    for w in range(q.number[N_PLACES]):
+        for x in range(q.place[w, DEGREE]):
+            q.exit[w * width + x, SEEN] = 0
     needed = 0.0
-    for w in range(q.number[0]):
-        for first in range(q.place[w, 0]):
+    for w in range(q.number[N_PLACES]):
+        for first in range(q.place[w, DEGREE]):
             begin = w * width + first
-            if q.exit[begin, 0] >= 0 or q.exit[begin, 2]:
+            if q.exit[begin, MATE] >= 0 or q.exit[begin, SEEN]:
                 continue
             for b in range(sides):
-                q.balance[b, 0] = 0
+                q.balance[b, HERE] = 0
             excess = 0.0
             negative = 0.0
             total = 0.0
@@ -394,11 +399,11 @@ def within_budget(q):  # type: ignore[no-untyped-def]
             stubs = 0
             x = begin
             while True:
-                q.exit[x, 2] = 1
+                q.exit[x, SEEN] = 1
                 stubs += 1
-                k = q.exit[x, 1]
-                if q.kind[k, 2] >= 0:
-                    q.balance[q.kind[k, 2], 0] += q.kind[k, 3]
+                k = q.exit[x, KIND_OF_EXIT]
+                if q.kind[k, COMPONENT] >= 0:
+                    q.balance[q.kind[k, COMPONENT], HERE] += q.kind[k, SIDE]
                 up = 0.0
                 down = 0.0
                 before = x
@@ -407,12 +412,12 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                     angle = np.pi - corner(q, before, x)
                     up += max(angle, 0.0)
                     down += max(-angle, 0.0)
-                    if q.exit[x, 0] < 0:
+                    if q.exit[x, MATE] < 0:
                         break
-                    angle = q.bearing[x, 1]
+                    angle = q.bearing[x, TURN]
                     up += max(angle, 0.0)
                     down += max(-angle, 0.0)
-                    before = q.exit[x, 0]
+                    before = q.exit[x, MATE]
                     x = before
                 excess += max(up - 2 * np.pi, 0.0)
                 paid += min(up, down)
@@ -421,17 +426,17 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                 if x == begin:
                     break
             for b in range(sides):
-                if q.balance[b, 0] > 0:
-                    q.balance[b, 1] += q.balance[b, 0]
+                if q.balance[b, HERE] > 0:
+                    q.balance[b, SURPLUS] += q.balance[b, HERE]
                 else:
-                    q.balance[b, 2] -= q.balance[b, 0]
+                    q.balance[b, LACK] -= q.balance[b, HERE]
             if total - np.pi * stubs < 0:  # the region of the outer face, which has 2 pi more negative turn than positive
                 excess = max(excess, paid) + 2 * np.pi
             needed += max(excess - negative, 0.0)
             if needed > possible + 1e-5:
                 return False
     for b in range(sides):
-        if q.balance[b, 1] > 0 or q.balance[b, 2] > 0:
+        if q.balance[b, SURPLUS] > 0 or q.balance[b, LACK] > 0:
             up_left = 0
             down_left = 0
             for s in range(q.sign.shape[0]):
@@ -439,7 +444,7 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                     most = max(places_possible(q, s), 0)
                     up_left += most * max(q.surplus[s, b], 0)
                     down_left += most * max(-q.surplus[s, b], 0)
-            if q.balance[b, 1] > down_left or q.balance[b, 2] > up_left:
+            if q.balance[b, SURPLUS] > down_left or q.balance[b, LACK] > up_left:
                 return False
     return True
 
@@ -452,34 +457,34 @@ def decided(q, stub, end):  # type: ignore[no-untyped-def]
     """
     width = q.exit.shape[0] // q.place.shape[0]
     walked = walked_from(q, stub)
-    m = q.way[walked, 0]
-    turn = q.angle[walked, 1]
+    m = q.way[walked, OTHER]
+    turn = q.angle[walked, TURN]
     new = end == -1
     if new:
-        end = place_made(q, m) * width + q.way[walked, 1]
-        if q.number[3]:  # without a compass a place gets its frame from the way that led there
-            carried = q.bearing[stub, 0] + np.pi + turn - q.bearing[end, 0]
-            first = end - q.way[walked, 1]
-            for x in range(q.node[m, 0]):
-                q.bearing[first + x, 0] += carried
-    settled = turn + wrapped(q.bearing[end, 0] + np.pi - q.bearing[stub, 0] - turn)
-    q.exit[stub, 0] = end
-    q.exit[end, 0] = stub
-    q.bearing[stub, 1] = settled
-    q.bearing[end, 1] = -settled
-    q.kind[q.exit[stub, 1], 0] -= 1
-    q.kind[q.exit[end, 1], 0] -= 1
+        end = place_made(q, m) * width + q.way[walked, BACK]
+        if q.number[RELATIVE]:  # without a compass a place gets its frame from the way that led there
+            carried = q.bearing[stub, HEADING] + np.pi + turn - q.bearing[end, HEADING]
+            first = end - q.way[walked, BACK]
+            for x in range(q.node[m, DEGREE]):
+                q.bearing[first + x, HEADING] += carried
+    settled = turn + wrapped(q.bearing[end, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
+    q.exit[stub, MATE] = end
+    q.exit[end, MATE] = stub
+    q.bearing[stub, TURN] = settled
+    q.bearing[end, TURN] = -settled
+    q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] -= 1
+    q.kind[q.exit[end, KIND_OF_EXIT], STUBS] -= 1
     if new and not put(q, m, end // width, 0):
         return end, False
     if not folded(q, stub, end):
         return end, False
-    if q.number[4] == 1:
+    if q.number[CLOSED] == 1:
         for k in range(q.kind.shape[0]):
-            if q.kind[k, 0] > q.kind[k, 1]:
+            if q.kind[k, STUBS] > q.kind[k, ENDS]:
                 return end, False
         if not demanded(q):
             return end, False
-        if q.number[5] == 1 and not within_budget(q):
+        if q.number[STRICT] == 1 and not within_budget(q):
             return end, False
     return end, True
 
@@ -489,14 +494,14 @@ def undone(q, stub, end, trail, places):  # type: ignore[no-untyped-def]
     """Take a decision back: the trail and the places are as they were."""
     width = q.exit.shape[0] // q.place.shape[0]
     taken_back(q, trail)
-    q.exit[stub, 0] = -1
-    q.exit[end, 0] = -1
-    q.kind[q.exit[stub, 1], 0] += 1
-    q.kind[q.exit[end, 1], 0] += 1
-    if q.number[0] > places:
-        q.number[0] = places
-        for x in range(q.place[places, 0]):
-            q.kind[q.exit[places * width + x, 1], 0] -= 1
+    q.exit[stub, MATE] = -1
+    q.exit[end, MATE] = -1
+    q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] += 1
+    q.kind[q.exit[end, KIND_OF_EXIT], STUBS] += 1
+    if q.number[N_PLACES] > places:
+        q.number[N_PLACES] = places
+        for x in range(q.place[places, DEGREE]):
+            q.kind[q.exit[places * width + x, KIND_OF_EXIT], STUBS] -= 1
 
 
 @kernel
@@ -508,58 +513,63 @@ def branch(q, best):  # type: ignore[no-untyped-def]
     is decided.
     """
     width = q.exit.shape[0] // q.place.shape[0]
-    closed = q.number[4] == 1
+    closed = q.number[CLOSED] == 1
     chosen = -1
     fewest = 1 << 30
     heaviest = -1
     if closed:
-        for e in range(q.number[0] * width):
-            q.exit[e, 3] = 0
-    may_be_new = q.number[0] < q.limit[1]
-    for w in range(q.number[0]):
-        for x in range(q.place[w, 0]):
+        for e in range(q.number[N_PLACES] * width):
+            q.exit[e, ENTERED] = 0
+    may_be_new = q.number[N_PLACES] < q.limit[MOST_PLACES]
+    for w in range(q.number[N_PLACES]):
+        for x in range(q.place[w, DEGREE]):
             e = w * width + x
-            if q.exit[e, 0] >= 0:
+            if q.exit[e, MATE] >= 0:
                 continue
             walked = walked_from(q, e)
             if walked < 0:
                 continue
-            m = q.way[walked, 0]
+            m = q.way[walked, OTHER]
             found = options(q, e, walked, may_be_new)
             if closed:
                 for j in range(found):
                     if q.option[j] >= 0:
-                        q.exit[q.option[j], 3] += 1
-                        q.exit[q.option[j], 4] = e
+                        q.exit[q.option[j], ENTERED] += 1
+                        q.exit[q.option[j], ENTERED_BY] = e
             if found == 0:
-                q.node[m, 6] += 1
+                q.node[m, FAILS] += 1
                 return e, 0
-            if found < fewest or (found == fewest and found > 1 and q.node[m, 6] > heaviest):
+            if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
                 chosen = e
                 fewest = found
-                heaviest = q.node[m, 6]
+                heaviest = q.node[m, FAILS]
                 for j in range(found):
                     best[j] = q.option[j]
     if not closed or chosen < 0:
         return chosen, fewest
-    for w in range(q.number[0]):
-        for x in range(q.place[w, 0]):
+    for w in range(q.number[N_PLACES]):
+        for x in range(q.place[w, DEGREE]):
             e = w * width + x
-            if q.exit[e, 0] >= 0 or q.exit[e, 3] > 1 or (q.exit[e, 3] == 1 and fewest == 1) or walked_from(q, e) >= 0:
+            if (
+                q.exit[e, MATE] >= 0
+                or q.exit[e, ENTERED] > 1
+                or (q.exit[e, ENTERED] == 1 and fewest == 1)
+                or walked_from(q, e) >= 0
+            ):
                 continue
-            reference = q.place[w, 3]
-            own = reference * width + (x - q.node[reference, 2]) % q.place[w, 0]
+            reference = q.place[w, REFERENCE]
+            own = reference * width + (x - q.node[reference, SHIFT]) % q.place[w, DEGREE]
             later = False
             for i in range(q.start[own], q.start[own + 1]):
                 n = q.candidate[i] // width
-                if q.node[n, 1] < 0 and q.node[q.way[q.candidate[i], 0], 1] < 0:
+                if q.node[n, PLACE] < 0 and q.node[q.way[q.candidate[i], OTHER], PLACE] < 0:
                     later = True
                     break
             if later:
                 continue
-            if q.exit[e, 3] == 0:
+            if q.exit[e, ENTERED] == 0:
                 return e, 0
-            chosen = q.exit[e, 4]
+            chosen = q.exit[e, ENTERED_BY]
             fewest = 1
             best[0] = e
     return chosen, fewest
@@ -569,59 +579,59 @@ def branch(q, best):  # type: ignore[no-untyped-def]
 def searched(q, control, frame, choice, best, out, stop):  # type: ignore[no-untyped-def]
     """Search on from where the search stands; return how many quotients were found, the places of all nodes in `out`.
 
-    Parameters: control (6,) and frame (depth, 5), choice: how the search stands; best: scratch; out (B, N, 2): place and shift
-    of every node; stop: decisions after which to return. Returns early when `out` is full. control[DONE] tells the end.
+    Parameters: control (6,), frame (depth, 5) and choice say how the search stands; best is scratch; out (B, N, 2) takes
+    place and shift of every node; stop is a number of decisions. Returns early when `out` is full; control[DONE] tells the
+    end.
     """
-    width = q.exit.shape[0] // q.place.shape[0]
     found = 0
     made = 0
-    down = control[2] == 1
-    depth = control[0]
-    top = control[1]
+    down = control[GOING_DOWN] == 1
+    depth = control[DEPTH]
+    top = control[TOP]
     while True:
         if down:
             if made >= stop or found == out.shape[0]:
-                control[2] = 1
+                control[GOING_DOWN] = 1
                 break
             made += 1
             stub, number = branch(q, best)
             if stub < 0:
                 whole = True
-                if q.number[4] == 1:
+                if q.number[CLOSED] == 1:
                     for k in range(q.kind.shape[0]):
-                        if q.kind[k, 0] > 0:
+                        if q.kind[k, STUBS] > 0:
                             whole = False
                 if whole:
                     for n in range(q.node.shape[0]):
-                        out[found, n, 0] = q.node[n, 1]
-                        out[found, n, 1] = q.node[n, 2]
+                        out[found, n, 0] = q.node[n, PLACE]
+                        out[found, n, 1] = q.node[n, SHIFT]
                     found += 1
             else:
-                frame[depth, 0] = stub
-                frame[depth, 1] = top
+                frame[depth, STUB] = stub
+                frame[depth, BOTTOM] = top
                 for j in range(number):
                     choice[top + j] = best[number - 1 - j]
                 top += number
-                frame[depth, 2] = q.number[1]
-                frame[depth, 3] = q.number[0]
-                frame[depth, 4] = -2
+                frame[depth, TRAIL_BEFORE] = q.number[N_TRAIL]
+                frame[depth, PLACES_BEFORE] = q.number[N_PLACES]
+                frame[depth, ENTERED_STUB] = NOTHING
                 depth += 1
         if depth == 0:
-            control[5] = 1
+            control[DONE] = 1
             break
         f = depth - 1
-        if frame[f, 4] != -2:
-            undone(q, frame[f, 0], frame[f, 4], frame[f, 2], frame[f, 3])
-            frame[f, 4] = -2
-        if top <= frame[f, 1]:
+        if frame[f, ENTERED_STUB] != NOTHING:
+            undone(q, frame[f, STUB], frame[f, ENTERED_STUB], frame[f, TRAIL_BEFORE], frame[f, PLACES_BEFORE])
+            frame[f, ENTERED_STUB] = NOTHING
+        if top <= frame[f, BOTTOM]:
             depth -= 1
             down = False
             continue
         top -= 1
-        end, down = decided(q, frame[f, 0], choice[top])
-        frame[f, 4] = end
-    control[0] = depth
-    control[1] = top
-    control[3] += made
-    control[4] += found
+        end, down = decided(q, frame[f, STUB], choice[top])
+        frame[f, ENTERED_STUB] = end
+    control[DEPTH] = depth
+    control[TOP] = top
+    control[N_DECISIONS] += made
+    control[N_FOUND] += found
     return found

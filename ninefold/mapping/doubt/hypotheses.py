@@ -1,8 +1,8 @@
 """Every plane map that explains a walk through places that look alike.
 
 A hypothesis is a quotient of the walk's visits: same places merged, each exit used by one way, congruent along the exits
-walked. It is legal when every face of the walked part turns +1 and exactly one -1, as `PlaneMap` demands. It is closed when no
-exit is left untravelled. See `walk_tree` for how a walk is folded, and `quotients` for the search.
+walked. It is legal when every face of the walked part turns +1 and exactly one -1, as `PlaneMap` demands. It is closed when
+no exit is left untravelled. See `walk_tree` for how a walk is folded, and `quotients` for the search.
 """
 
 from __future__ import annotations
@@ -302,10 +302,10 @@ def plane_of(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64])
         heading = _common_frame(heading, turn, tail)
     miss = heading[1::2] - np.pi - heading[0::2] - turn
     settled = turn + miss - TAU * np.round(miss / TAU)
-    names = [
-        next((tree.names[k] for k in np.flatnonzero(place == w) if tree.names[k] is not None), f"p{w}")
-        for w in range(lead.size)
-    ]
+    names = [f"p{w}" for w in range(lead.size)]
+    for node, name in enumerate(tree.names):
+        if name is not None:
+            names[int(place[node])] = name
     return PlaneMap.from_darts(tail, after, n_vertices=lead.size, heading=heading, turn=settled, vertex_names=names)
 
 
@@ -323,4 +323,4 @@ def _common_frame(heading: NDArray[np.float64], turn: NDArray[np.float64], tail:
                 along = turn[dart >> 1] if dart % 2 == 0 else -turn[dart >> 1]
                 frame[w] = frame[v] + heading[dart] + np.pi + along - heading[dart ^ 1]
                 queue.append(w)
-    return heading + np.array([frame[int(v)] for v in tail])
+    return heading + np.array([frame[int(v)] for v in tail], np.float64)

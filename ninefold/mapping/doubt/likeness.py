@@ -1,8 +1,8 @@
 """Which nodes of a folded walk can be one place, and what that says of their exits.
 
 Two nodes can be one place under a shift k, exit x of the one being exit x + k of the other, when they have as many exits and
-the headings agree within the tolerance: with a compass as they are, without one up to a common turn. Exits that some chain of
-such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
+the headings agree within the tolerance: with a compass as they are, without one up to a common turn. Exits that some chain
+of such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ demand, the turning budget). Which node the search begins with changes nothing i
 
 References
 ----------
-F. Savelli and B. Kuipers, Loop-closing and planarity in topological map-building, IROS 2004: planarity in the tree of all maps.
+F. Savelli and B. Kuipers, Loop-closing and planarity in topological map-building, IROS 2004.
 """
 
 from __future__ import annotations
@@ -50,13 +50,6 @@ class QuotientSearch:
         False judges genus alone; for tests.
     most_places
         Places of a map at most, or None.
-
-    Attributes
-    ----------
-    decisions, found
-        How many were made, and how many quotients were found so far.
-    done
-        Whether the search has come to its end: then `found` is the number of quotients.
     """
 
     def __init__(
@@ -87,14 +80,17 @@ class QuotientSearch:
 
     @property
     def decisions(self) -> int:
+        """Decisions made so far."""
         return int(self._control[kernels.N_DECISIONS])
 
     @property
     def found(self) -> int:
+        """Quotients found so far."""
         return int(self._control[kernels.N_FOUND])
 
     @property
     def done(self) -> bool:
+        """Whether the search has come to its end: then `found` is the number of quotients."""
         return bool(self._control[kernels.DONE])
 
     @property
@@ -186,15 +182,15 @@ def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:
             n, m = np.nonzero((bits >> k) & 1)
             off = np.roll(yaw, -k, axis=1)[m] - yaw[n]
             off -= TAU * np.round(off / TAU)
-            for x in range(degree):
-                np.minimum.at(low, (nodes[n], x), off[:, x])
-                np.maximum.at(high, (nodes[n], x), off[:, x])
-    n, x = np.nonzero(tree.other >= 0)
-    m, y = tree.other[n, x], tree.back[n, x]
-    miss = tree.heading[m, y] + np.pi - tree.heading[n, x] - tree.turn[n, x]
+            for exit_ in range(degree):
+                np.minimum.at(low[:, exit_], nodes[n], off[:, exit_])
+                np.maximum.at(high[:, exit_], nodes[n], off[:, exit_])
+    here, x = np.nonzero(tree.other >= 0)
+    there, y = tree.other[here, x], tree.back[here, x]
+    miss = tree.heading[there, y] + np.pi - tree.heading[here, x] - tree.turn[here, x]
     miss -= TAU * np.round(miss / TAU)
     slack = np.zeros(tree.heading.shape)
-    slack[n, x] = np.maximum(np.abs(miss + high[m, y] - low[n, x]), np.abs(miss + low[m, y] - high[n, x]))
+    slack[here, x] = np.maximum(np.abs(miss + high[there, y] - low[here, x]), np.abs(miss + low[there, y] - high[here, x]))
     return slack
 
 
