@@ -15,11 +15,11 @@ from ..robot.walk import Visit, Walk
 from .existence import some_map
 from .likeness import likeness
 from .walk_tree import Contradiction, fold
-from .why_not import Reasons
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from .likeness import Likeness
     from .walk_tree import WalkTree
 
 __all__ = ["smallest_stretch", "stretch_of"]
@@ -63,22 +63,22 @@ def smallest_stretch(
     """
     pairs, others = tuple(same), tuple(differ)
 
-    def tree_of(first: int, last: int) -> tuple[WalkTree, Reasons]:
-        tree = fold(stretch_of(walk, first, last), tolerance=tolerance)
+    def tree_of(first: int, last: int) -> tuple[WalkTree, Likeness]:
+        tree = fold(stretch_of(walk, first, last), tolerance=tolerance, first=first)
         nodes = [_within(tree, known, first, last) for known in (pairs, others)]
-        return tree, Reasons(tree, likeness(tree, same=nodes[0], differ=nodes[1]))
+        return tree, likeness(tree, same=nodes[0], differ=nodes[1])
 
     def cannot_be(first: int, last: int) -> bool:
-        tree, reasons = tree_of(first, last)
-        return some_map(tree, reasons.alike, max_places=max_places, until=until) is False
+        tree, alike = tree_of(first, last)
+        return some_map(tree, alike, max_places=max_places, until=until) is False
 
     visits = sum(isinstance(event, Visit) for event in walk.events)
     if not visits or not cannot_be(0, visits - 1):
         return None
     last = _least(lambda end: cannot_be(0, end), 0, visits - 1, until)
     first = last - _least(lambda legs: cannot_be(last - legs, last), 0, last, until)
-    tree, reasons = tree_of(first, last)
-    return Contradiction(first, last, _reason(tree, reasons, first, last, max_places))
+    tree, _ = tree_of(first, last)
+    return Contradiction(first, last, _reason(tree, first, last, max_places))
 
 
 def _least(holds: Callable[[int], bool], low: int, high: int, until: float | None) -> int:
@@ -102,10 +102,10 @@ def _within(tree: WalkTree, pairs: Sequence[tuple[int, int]], first: int, last: 
     ]
 
 
-def _reason(tree: WalkTree, reasons: Reasons, first: int, last: int, max_places: int | None) -> str:
+def _reason(tree: WalkTree, first: int, last: int, max_places: int | None) -> str:
     """Return in words why a stretch cannot be; visits are counted from 1, in the whole walk."""
     if tree.contradiction is not None:
-        return tree.contradiction.renumbered(first).text
+        return tree.contradiction.text
     stretch = f"no plane map has visits {first + 1} to {last + 1}"
     names = tree.names[int(tree.node_of[0])], tree.names[int(tree.node_of[-1])]
     if names[0] is not None and names[0] == names[1]:

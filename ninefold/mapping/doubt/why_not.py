@@ -55,7 +55,7 @@ class WhyNot:
         Pairs of visits that would have to be the same, each the consequence of the one before, for a consequence: the last
         pair is the one that cannot. Both visits of it are one where one exit of a place would have to be another.
     around
-        Visits along the face or loop, in order, the face on the left.
+        Visits along the face, in order, the face on the left; or along the loop, from the one visit to the other.
     turning
         Turns of that face or loop, counter-clockwise.
     others
@@ -165,8 +165,8 @@ class Reasons:
         face = impossible_face(self.tree, self.alike, found)
         if face is not None:
             around = self._around(face, visits)
-            inside = "a face turns by +1, and only the outer one by -1"
-            text = f"{both}, the face along visits {_listed(around)} would turn by {_turns(face.turning)}; {inside}"
+            inside = "faces turn by +1, the outer one by -1"
+            text = f"{both}, the way along visits {_listed(around)} would be round a face that turns by {_turns(face.turning)}; {inside}"
             return WhyNot("face", visits, text, around=around, turning=face.turning)
         return self._loop(n, m, shift, visits, both)
 
@@ -193,10 +193,10 @@ class Reasons:
         loop = impossible_loop(self.tree, path, -shift)
         if loop is None or not (self._all_different(nodes[:-1]) and self._all_different(nodes[1:])):
             return None
-        around = self._around(loop, visits)[:-1]
+        around = self._around(loop, visits)
         text = (
-            f"{both}, the loop along visits {_listed(around)} would turn by {_turns(loop.turning)}; it passes no place "
-            "twice, and such a loop turns by +1 or -1"
+            f"{both}, the way along visits {_listed(around)} would be a loop that turns by {_turns(loop.turning)}; it passes "
+            "no place twice, and such a loop turns by +1 or -1"
         )
         return WhyNot("loop", visits, text, around=around, turning=loop.turning)
 
