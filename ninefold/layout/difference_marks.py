@@ -84,15 +84,14 @@ def differences_of(best: Hypothesis, other: Hypothesis, wide: WithEnds) -> Diffe
 def difference_mark(kind: str, x: float, y: float, radius: float) -> str:
     """Return a mark as SVG."""
     k = DIFFERENCE_COLOURS[kind]
+    look = f'class="f{k}"'
     match kind:
         case "merged":
-            shapes = (f'<circle {{}} cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}"/>', "")
+            shape = f'circle cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}"'
         case "split":
-            shapes = (f'<circle {{}} cx="{x:.2f}" cy="{y:.2f}" r="{radius - 1:.2f}"/>', 'fill="none" stroke-width="2.6"')
+            shape = f'circle cx="{x:.2f}" cy="{y:.2f}" r="{radius - 1:.2f}"'
+            look = f'class="s{k}" fill="none" stroke-width="2.6"'
         case _:
             r = radius + 1
-            way = f"M{x:.2f},{y - r:.2f} {x + r:.2f},{y:.2f} {x:.2f},{y + r:.2f} {x - r:.2f},{y:.2f}Z"
-            shapes = (f'<path {{}} d="{way}"/>', "")
-    shape, ring = shapes
-    halo = shape.format('class="halo" fill="none" stroke-width="5"')
-    return halo + shape.format(f'class="s{k}" {ring}' if ring else f'class="f{k}"')
+            shape = f'path d="M{x:.2f},{y - r:.2f} {x + r:.2f},{y:.2f} {x:.2f},{y + r:.2f} {x - r:.2f},{y:.2f}Z"'
+    return f'<{shape} class="halo" fill="none" stroke-width="5"/><{shape} {look}/>'

@@ -113,9 +113,7 @@ def render(
         *_doubted(page, marks),
         *([] if differences is None else _differing(page, differences)),
     ]
-    if differences is not None:
-        shown = True
-    if shown or (seen is not None and seen.names):
+    if shown or differences is not None or (seen is not None and seen.names):
         names: dict[int, str] = dict(enumerate(drawing.plane.vertex_names)) if shown else {}
         least = 7.0 if any(isinstance(x, Point) for _, x in sets) else page.dot
         radii: dict[int, float] = {mark.vertex: _ring_radius(page) for mark in marks}
@@ -123,7 +121,7 @@ def render(
             names |= {spot.vertex: seen.text(spot) for spot in seen.spots} if shown else seen.names
             radii |= {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
         if differences is not None:
-            names = differences.names
+            names = {v: text for v, text in differences.names.items() if shown or v in differences.marked}
             radii |= dict.fromkeys(differences.marked, _ring_radius(page))
         body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
     legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said), differences)
@@ -395,7 +393,7 @@ def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
 def _differing(page: _Page, differences: Differences) -> list[str]:
     """Return a mark for every place that is not one of the best map."""
     at = page.place(page.drawing.points).tolist()
-    return [difference_mark(kind, *at[v], _ring_radius(page)) for v, kind in differences.marked.items()]
+    return [difference_mark(kind, at[v][0], at[v][1], _ring_radius(page)) for v, kind in differences.marked.items()]
 
 
 def _spots(page: _Page, seen: Belief) -> list[str]:
@@ -449,7 +447,9 @@ def _legend(
         entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
     entries += [] if seen is None else [(partial(_spot_swatch, step), words) for step, words in seen.entries]
     entries += [(partial(_ring_swatch, kind), words) for kind, words in doubt_words(marks)]
-    entries += [] if differences is None else [(partial(_differing_swatch, kind), words) for kind, words in differences.entries]
+    entries += (
+        [] if differences is None else [(partial(_differing_swatch, kind), words) for kind, words in differences.entries]
+    )
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:

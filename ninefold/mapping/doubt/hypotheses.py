@@ -189,8 +189,8 @@ def hypotheses(
     until = begun + (BUDGET if budget is None else budget)
     tree = fold(walk, tolerance=tolerance)
     if tree.contradiction is not None:
-        wrong = smallest_stretch(walk, tolerance=tolerance, until=until) or tree.contradiction
-        return Hypotheses(tree, likeness(tree), (), 0, True, wrong, monotonic() - begun, closed, max_places)
+        shown = smallest_stretch(walk, tolerance=tolerance, until=until) or tree.contradiction
+        return Hypotheses(tree, likeness(tree), (), 0, True, shown, monotonic() - begun, closed, max_places)
     same, differ, told = tuple(same), tuple(differ), report or (lambda _: None)
     alike = likeness(tree, same=_nodes(tree, same), differ=_nodes(tree, differ))
     most = KEPT if limit is None else limit
@@ -202,11 +202,16 @@ def hypotheses(
         shut = count if closed is None else 0
         number, whole = _open_maps(tree, alike, found, most, max_places, until, told, closed=shut)
         count, exact = count + number, exact and whole
-    found.sort(key=lambda one: (not one.closed, one.n_places, one.place.tolist()))
-    wrong = None
+    found.sort(key=_rank)
+    wrong: Contradiction | None = None
     if exact and not count:
         wrong = smallest_stretch(walk, tolerance=tolerance, max_places=max_places, same=same, differ=differ, until=until)
     return Hypotheses(tree, alike, tuple(found[:most]), count, exact, wrong, monotonic() - begun, closed, max_places)
+
+
+def _rank(one: Hypothesis) -> tuple[bool, int, list[int]]:
+    """Return what maps are ranked by: closed before open, fewest places first."""
+    return not one.closed, one.n_places, one.place.tolist()
 
 
 def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -275,8 +280,10 @@ def _open_maps(
             one = _hypothesis(tree, places)
             if not one.closed:
                 number += 1
-                if len(found) < most + closed:
-                    found.append(one)
+                found.append(one)
+                if len(found) > 2 * most + closed + 1000:
+                    found.sort(key=_rank)
+                    del found[max(most, closed) :]
         report(closed + number)
         if monotonic() > until:
             return number, False

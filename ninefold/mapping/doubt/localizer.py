@@ -109,8 +109,8 @@ class Localizer:
     Raises
     ------
     BadInput, DifferentMaps, UnknownName
-        For names that the map does not have, a map without headings, a sigma that is none or above 60 degrees, probabilities that are none, or `missed` and
-        `extra` without a compass.
+        For a map without headings, a sigma that is none or above 60 degrees, probabilities that are none, `missed` and
+        `extra` without a compass, or names that the map does not have.
 
     Notes
     -----
@@ -175,7 +175,7 @@ class Localizer:
         self._states = self._n_darts + places.astype(np.int64)
         self._log = np.full(places.size, -np.log(places.size))
         self._before = self._log  # log weights before what was seen here, which a move needs
-        self._evidence = self._evidence_before = 0.0  # log likelihoods of all that was seen and done, and without this look
+        self._evidence = self._evidence_before = 0.0  # log likelihood of all that was seen and done; and without this look
         self._look = Look()
         self._given: tuple[int, ...] = ()  # where each exit of the list, as given, is in the look
         self._observations = self._moves = 0

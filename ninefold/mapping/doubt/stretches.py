@@ -15,6 +15,7 @@ from ..robot.walk import Visit, Walk
 from .existence import some_map
 from .likeness import likeness
 from .walk_tree import Contradiction, fold
+from .why_not import Reasons
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -77,8 +78,8 @@ def smallest_stretch(
         return None
     last = _least(lambda end: cannot_be(0, end), 0, visits - 1, until)
     first = last - _least(lambda legs: cannot_be(last - legs, last), 0, last, until)
-    tree, _ = tree_of(first, last)
-    return Contradiction(first, last, _reason(tree, first, last, max_places))
+    tree, alike = tree_of(first, last)
+    return Contradiction(first, last, _reason(tree, alike, first, last, max_places))
 
 
 def _least(holds: Callable[[int], bool], low: int, high: int, until: float | None) -> int:
@@ -102,14 +103,19 @@ def _within(tree: WalkTree, pairs: Sequence[tuple[int, int]], first: int, last: 
     ]
 
 
-def _reason(tree: WalkTree, first: int, last: int, max_places: int | None) -> str:
+def _reason(tree: WalkTree, alike: Likeness, first: int, last: int, max_places: int | None) -> str:
     """Return in words why a stretch cannot be; visits are counted from 1, in the whole walk."""
     if tree.contradiction is not None:
         return tree.contradiction.text
+    ends = int(tree.node_of[0]), int(tree.node_of[-1])
     stretch = f"no plane map has visits {first + 1} to {last + 1}"
-    names = tree.names[int(tree.node_of[0])], tree.names[int(tree.node_of[-1])]
-    if names[0] is not None and names[0] == names[1]:
-        return f"{stretch}, which begin and end at {quoted(names[0])}"
-    if max_places is not None:
-        return f"{stretch} with so few places"
-    return f"{stretch} with what is known to be one place"
+    if alike.group[ends[0]] >= 0 and alike.group[ends[0]] == alike.group[ends[1]]:
+        name = tree.names[ends[0]]
+        known = "known to be the same place" if name is None else f"both called {quoted(name)}"
+        found = Reasons(tree, alike, first=first).plain(0, tree.n_visits - 1)
+        if found is not None:
+            return f"visits {first + 1} and {last + 1} are {known}; {found.text}"
+        return f"{stretch}, the first and the last of which are {known}"
+    return (
+        f"{stretch} with so few places" if max_places is not None else f"{stretch} with what is known to be the same place"
+    )

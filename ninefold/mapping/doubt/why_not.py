@@ -81,10 +81,12 @@ class Reasons:
     ----------
     tree, alike
         The walk, and what of it can be the same.
+    first
+        Of a stretch of a longer walk: which visit of that its first one is, counted from 0, for the words.
     """
 
-    def __init__(self, tree: WalkTree, alike: Likeness) -> None:
-        self.tree, self.alike = tree, alike
+    def __init__(self, tree: WalkTree, alike: Likeness, *, first: int = 0) -> None:
+        self.tree, self.alike, self._from = tree, alike, first + 1
         self._first = np.full(tree.n_nodes, tree.n_visits, np.int64)
         np.minimum.at(self._first, tree.node_of, np.arange(tree.n_visits))
         self._impossible: dict[tuple[int, int], bool] = {}
@@ -112,7 +114,7 @@ class Reasons:
         n, m = int(self.tree.node_of[i]), int(self.tree.node_of[j])
         alike = held_same(self.alike, n, m)
         there_is = some_map(self.tree, alike, closed=closed is True, max_places=max_places, until=until)
-        both = f"visits {i + 1} and {j + 1}"
+        both = f"visits {i + self._from} and {j + self._from}"
         if there_is:
             return None
         if there_is is None:
@@ -131,7 +133,7 @@ class Reasons:
         return int(self._first[node])
 
     def _unlike(self, n: int, m: int, visits: tuple[int, int]) -> WhyNot:
-        i, j = (v + 1 for v in visits)
+        i, j = (v + self._from for v in visits)
         names = self.tree.names[n], self.tree.names[m]
         if None not in names and names[0] != names[1]:
             return WhyNot("names", visits, f"visit {i} is called {quoted(names[0])} and visit {j} {quoted(names[1])}")
@@ -158,7 +160,7 @@ class Reasons:
 
     def _against(self, n: int, m: int, shift: int, visits: tuple[int, int]) -> WhyNot | None:
         """Return a reason against exit x of node n being exit x + shift of node m, or None."""
-        both = f"if visits {visits[0] + 1} and {visits[1] + 1} were the same place"
+        both = f"if visits {visits[0] + self._from} and {visits[1] + self._from} were the same place"
         found = merged(self.tree, self.alike, n, m, shift)
         if isinstance(found, Clash):
             return self._consequence(found, visits, both)
@@ -166,7 +168,10 @@ class Reasons:
         if face is not None:
             around = self._around(face, visits)
             inside = "faces turn by +1, the outer one by -1"
-            text = f"{both}, the way along visits {_listed(around)} would be round a face that turns by {_turns(face.turning)}; {inside}"
+            text = (
+                f"{both}, the way along visits {_listed(around, self._from)} would be round a face that turns by "
+                f"{_turns(face.turning)}; {inside}"
+            )
             return WhyNot("face", visits, text, around=around, turning=face.turning)
         return self._loop(n, m, shift, visits, both)
 
@@ -174,13 +179,13 @@ class Reasons:
         chain = [visits, *((self._visit(a), self._visit(b)) for a, b in found.chain[1:])]
         a, b = found.pair
         i, j = self._visit(a, visits), self._visit(b, visits)
-        steps = "".join(f", so would be visits {p + 1} and {q + 1}" for p, q in chain[1:])
+        steps = "".join(f", so would be visits {p + self._from} and {q + self._from}" for p, q in chain[1:])
         if a == b:
-            last = f"then one exit of visit {i + 1} would be another of its exits"
+            last = f"then one exit of visit {i + self._from} would be another of its exits"
             return WhyNot("consequence", visits, f"{both}{steps}; {last}", chain=(*chain, (i, i)))
         reason = self._unlike(a, b, (i, j)).text
         if {a, b} != set(found.chain[-1]):
-            steps += f", and with them visits {i + 1} and {j + 1}"
+            steps += f", and with them visits {i + self._from} and {j + self._from}"
         if (i, j) != chain[-1]:
             chain.append((i, j))
         return WhyNot("consequence", visits, f"{both}{steps}; but {reason}", chain=tuple(chain))
@@ -195,8 +200,8 @@ class Reasons:
             return None
         around = self._around(loop, visits)
         text = (
-            f"{both}, the way along visits {_listed(around)} would be a loop that turns by {_turns(loop.turning)}; it passes "
-            "no place twice, and such a loop turns by +1 or -1"
+            f"{both}, the way along visits {_listed(around, self._from)} would be a loop that turns by "
+            f"{_turns(loop.turning)}; it passes no place twice, and such a loop turns by +1 or -1"
         )
         return WhyNot("loop", visits, text, around=around, turning=loop.turning)
 
@@ -257,9 +262,9 @@ def _checked_visit(tree: WalkTree, visit: int) -> int:
     return int(visit)
 
 
-def _listed(visits: Sequence[int]) -> str:
-    """Return visits, counted from 1, in words; long lists cut in the middle."""
-    numbers = [str(visit + 1) for visit in visits]
+def _listed(visits: Sequence[int], first: int) -> str:
+    """Return visits by their numbers; long lists cut in the middle."""
+    numbers = [str(visit + first) for visit in visits]
     if len(numbers) > 14:
         numbers = [*numbers[:7], "...", *numbers[-6:]]
     return " ".join(numbers)
@@ -268,4 +273,6 @@ def _listed(visits: Sequence[int]) -> str:
 def _turns(turning: float) -> str:
     """Return turns as a signed number."""
     nearest = round(turning)
-    return f"{nearest:+d}" if nearest and abs(turning - nearest) < 0.02 else "0" if abs(turning) < 0.02 else f"{turning:+.2f}"
+    return (
+        f"{nearest:+d}" if nearest and abs(turning - nearest) < 0.02 else "0" if abs(turning) < 0.02 else f"{turning:+.2f}"
+    )
