@@ -121,9 +121,11 @@ def render(
             names |= {spot.vertex: seen.text(spot) for spot in seen.spots} if shown else seen.names
             radii |= {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
         if differences is not None:
-            names = {v: text for v, text in differences.names.items() if shown or v in differences.marked}
+            every = differences.n_places <= LABELS_UP_TO
+            names = {v: text for v, text in differences.names.items() if every or v in differences.marked}
             radii |= dict.fromkeys(differences.marked, _ring_radius(page))
-        body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
+        if names:
+            body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
     legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said), differences)
     body += legend
     name = _escaped(title or repr(drawing.plane))
