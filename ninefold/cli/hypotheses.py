@@ -286,7 +286,7 @@ class _Answer(NamedTuple):
             return f"no {kind} explains the walk{others}"
         bits = f" ({found.ambiguity:.1f} bits)" if found.count > 1 else ""
         shut = sum(one.closed for one in found.maps)
-        which = f", {shut} of them closed" if found.closed is None and found.count > 1 else ""
+        which = f", {shut or 'none'} of them closed" if found.closed is None and found.count > 1 else ""
         return f"{number} {explain} the walk{bits}{which}"
 
     def why(self, pair: tuple[int, int]) -> "WhyNot | None":

@@ -155,7 +155,9 @@ def test_names_that_no_map_can_hold():
     assert (found.count, found.exact) == (0, True)
     wrong = found.contradiction
     assert (wrong.first, wrong.last) == (2, 5)
-    assert wrong.text.startswith("visits 3 and 6 are both called 'hall'; if visits 3 and 6 were the same place, the way along")
+    assert wrong.text.startswith(
+        "visits 3 and 6 are both called 'hall'; if visits 3 and 6 were the same place, the way along"
+    )
     _is_smallest(walk, wrong)
 
 
