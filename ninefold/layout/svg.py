@@ -87,7 +87,7 @@ def render(
     seen = belief_of(drawing.plane, belief)
     said = tuple(doubts)
     marks = doubt_marks(drawing.plane, said)
-    page = _Page(drawing, width, title)
+    page = _Page(drawing, width, title, None if differences is None else differences.n_places)
     if colouring is not None:
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
@@ -123,7 +123,7 @@ def render(
         if differences is not None:
             every = differences.n_places <= LABELS_UP_TO
             names = {v: text for v, text in differences.names.items() if every or v in differences.marked}
-            radii |= dict.fromkeys(differences.marked, _ring_radius(page))
+            radii |= dict.fromkeys(differences.marked, _ring_radius(page) + 3.0)
         if names:
             body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
     legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said), differences)
@@ -184,11 +184,12 @@ def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | 
 class _Page:
     """The frame of the picture and the way from map coordinates to pixels."""
 
-    def __init__(self, drawing: Drawing, width: int, title: str | None) -> None:
+    def __init__(self, drawing: Drawing, width: int, title: str | None, n_shown: int | None = None) -> None:
+        """Make room for the first `n_shown` vertices and what joins them; left out, for all."""
         self.drawing = drawing
         self.width = width
         self.top = 54.0 if title else 0.0
-        corners = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
+        corners = _corners(drawing, n_shown).astype(np.float64)
         self._shear = np.array([[1.0, 0.0], [0.5, 0.75**0.5]]) if drawing.layout == "schnyder" else np.eye(2)
         corners = corners @ self._shear
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -217,6 +218,14 @@ class _Page:
     def rings(self, region: Region) -> str:
         """Path data of a region, for the even-odd rule."""
         return "".join(self.path(ring, closed=True) for part in region_rings(self.drawing, region) for ring in part)
+
+
+def _corners(drawing: Drawing, n_shown: int | None) -> NDArray[Any]:
+    """Return the points that the picture has to hold, (N, 2)."""
+    if n_shown is None:
+        return np.concatenate([drawing.points, drawing.bends])
+    between = (drawing.plane.tail.reshape(-1, 2) < n_shown).all(axis=1)
+    return np.concatenate([drawing.points[:n_shown], drawing.bends[np.repeat(between, np.diff(drawing.bend_start))]])
 
 
 def _escaped(text: str) -> str:
