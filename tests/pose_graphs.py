@@ -49,7 +49,9 @@ def pose_graph(world, *, seed=0, step=10.0, right=1.0, wrong=0, odometry=(0.05, 
     def measured(i, j, sigma):
         away, yaw = true[j, :2] - true[i, :2], true[i, 2]
         turn = true[j, 2] - yaw
-        seen = np.array([np.cos(yaw) * away[0] + np.sin(yaw) * away[1], -np.sin(yaw) * away[0] + np.cos(yaw) * away[1], turn])
+        seen = np.array(
+            [np.cos(yaw) * away[0] + np.sin(yaw) * away[1], -np.sin(yaw) * away[0] + np.cos(yaw) * away[1], turn]
+        )
         seen += rng.normal(0, (sigma[0], sigma[0], sigma[1]))
         seen[2] = (seen[2] + np.pi) % (2 * np.pi) - np.pi
         return seen

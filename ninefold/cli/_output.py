@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
 __all__ = ["first_few", "note", "notes", "one_line", "print_json", "progress"]
 
@@ -49,13 +49,13 @@ def one_line(message: str) -> str:
 
 
 @contextmanager
-def progress(step: str) -> Iterator[None]:
+def progress(step: str | Callable[[], str]) -> Iterator[None]:
     """Show on stderr, once the block has taken 2 s, what goes on and for how long; on a terminal in one line.
 
     Parameters
     ----------
     step
-        What is being done, such as ``"building the map"``.
+        What is being done, such as ``"building the map"``, or what tells it at that moment.
     """
     done = threading.Event()
     terminal = sys.stderr.isatty()
@@ -65,7 +65,8 @@ def progress(step: str) -> Iterator[None]:
         while not done.wait(pause):
             seconds = time.monotonic() - start
             end = "\r" if terminal else "\n"
-            print(f"ninefold: {step} ... {seconds:.0f} s", end=end, file=sys.stderr, flush=True)
+            doing = step if isinstance(step, str) else step()
+            print(f"ninefold: {doing} ... {seconds:.0f} s", end=end, file=sys.stderr, flush=True)
             pause = 0.5 if terminal else min(2 * pause, 30.0)
         if terminal and time.monotonic() - start >= QUIET_SECONDS:
             print("\x1b[2K\r", end="", file=sys.stderr, flush=True)

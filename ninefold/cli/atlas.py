@@ -230,6 +230,7 @@ def info(
             "dead_ends": int((plane.degree == 1).sum()),
             **_measured(plane),
             "origin": found.origin,
+            "alike": found.origin == "map" and found.n_events > 0 and found.walk.header.sigma is None,
             "events": found.n_events,
             "checks": _checks(plane),
             "health": None if plane.heading is None else health(plane).counts,
@@ -387,7 +388,8 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
     events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" or facts["events"] else ""
     estimated = facts["origin"] == "map" and facts["events"]
-    print(f"made from    a {'walk whose headings err' if estimated else facts['origin']}{events}")
+    walk = "walk whose places look alike" if facts["alike"] else "walk whose headings err"
+    print(f"made from    a {walk if estimated else facts['origin']}{events}")
     for record in facts["provenance"]:
         print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
     named = facts["names"]

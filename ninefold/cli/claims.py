@@ -50,7 +50,9 @@ def claims(
     if out is not None:
         write_without(read, [one.edge for one in judged.rejected], out, force=force)
     if judged.silent:
-        note(f"no loop says anything about {counted(judged.silent, 'closure')}: the heading is lost on the way, or odometry is")
+        note(
+            f"no loop says anything about {counted(judged.silent, 'closure')}: the heading is lost on the way, or odometry is"
+        )
     if as_json:
         print_json(
             {

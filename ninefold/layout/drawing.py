@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ninefold.mapping import Doubt, Health, PlaneMap, Set
 
     from .bearing_rigidity import Rigidity
+    from .difference_marks import Differences
 
 __all__ = ["Drawing"]
 
@@ -211,6 +212,7 @@ class Drawing(Immutable):
         health: bool | Health = False,
         belief: ArrayLike | None = None,
         doubts: Iterable[Doubt] = (),
+        differences: Differences | None = None,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -239,6 +241,8 @@ class Drawing(Immutable):
         doubts
             Of an estimate whose likeliest map this is: the places where something is undecided get numbered rings, and the
             sentences stand below.
+        differences
+            How this map differs from another of the same walk; see `draw_alternatives`, which shows several.
 
         Raises
         ------
@@ -261,6 +265,7 @@ class Drawing(Immutable):
             health=health,
             belief=belief,
             doubts=doubts,
+            differences=differences,
         )
 
     def save(self, path: str | Path, **options: Any) -> None:

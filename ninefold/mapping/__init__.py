@@ -27,12 +27,14 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.among import Whereabouts, WhichMap, locate_among
     from .doubt.claims import Claim, Claims, Rejection, claims
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
     from .doubt.hypotheses import Hypotheses, Hypothesis, hypotheses
     from .doubt.localizer import Candidate, Localizer, Move
+    from .doubt.why_not import WhyNot
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -78,6 +80,9 @@ __all__ = [
     "Visit",
     "Walk",
     "WalkHeader",
+    "Whereabouts",
+    "WhichMap",
+    "WhyNot",
     "bridges",
     "build",
     "circular_mean",
@@ -88,6 +93,7 @@ __all__ = [
     "health",
     "hypotheses",
     "locate",
+    "locate_among",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -97,12 +103,14 @@ __getattr__, __dir__ = attach(
     __name__,
     {
         "doubt.claims": ("Claim", "Claims", "Rejection", "claims"),
+        "doubt.among": ("Whereabouts", "WhichMap", "locate_among"),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
         "doubt.hypotheses": ("Hypotheses", "Hypothesis", "hypotheses"),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
+        "doubt.why_not": ("WhyNot",),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

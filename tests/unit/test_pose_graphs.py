@@ -57,7 +57,10 @@ def test_the_command_names_what_cannot_be_and_writes_the_rest_to_the_byte(square
     code, out, _ = answer(capsys, "claims", square, "-o", "clean.g2o")
     assert code == 1
     assert "square.g2o: 5 poses, 2 closures, 1 cannot be right" in out
-    assert "line 9, 0 - 3: the odometry between its poses says otherwise: the loop comes back 10 m off and turned by 90 deg" in out
+    assert (
+        "line 9, 0 - 3: the odometry between its poses says otherwise: the loop comes back 10 m off and turned by 90 deg"
+        in out
+    )
     before, after = Path(square).read_bytes().splitlines(True), Path("clean.g2o").read_bytes().splitlines(True)
     assert after == before[:8] + before[9:]
     code, out, _ = answer(capsys, "claims", "clean.g2o", "--json")

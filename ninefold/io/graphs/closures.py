@@ -234,7 +234,9 @@ class Judge:
         low, high = np.maximum(np.minimum(a, c), np.minimum(b, d)), np.minimum(np.maximum(a, c), np.maximum(b, d))
         stretches[low < high] *= 2.0  # odometry in both: its errors may add up, and no sum has more than twice the variance
         measured = _seen(across, self._covariance[others]) + _seen(at_end, self._covariance[np.full(others.size, k)])
-        return self._loops(home, stretches + measured, (self._chain[a] == self._chain[c]) & (self._chain[b] == self._chain[d]))
+        return self._loops(
+            home, stretches + measured, (self._chain[a] == self._chain[c]) & (self._chain[b] == self._chain[d])
+        )
 
     def _between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> Floats:
         """Return the covariance of the odometry between poses, seen from the frame where odometry begins."""

@@ -34,6 +34,19 @@ exact under the declared noise.
 `following`    `locate`, `Follower`: a localizer taken along a walk, event by event
 =============  ==================================================================================================
 
+**Which places are the same?** Where places look alike, `hypotheses` returns every map that explains a walk.
+
+=================  ==============================================================================================
+`why_not`          why two visits are not the same place, as a value
+`merging`          what follows if two visits are the same place
+`turning_faces`    faces and loops that turn as none does in the plane
+`existence`        whether there is a map at all
+`stretches`        the smallest stretch of a walk that already cannot be
+`comparing`        how one map of a walk differs from another, place by place
+`untravelled`      a map with an unknown place behind every exit that nobody walked
+`among`            `locate_among`: which of several maps is right, and where on it the robot is
+=================  ==============================================================================================
+
 `Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can
 be those of a place; ``_ahead`` looks where to go. The public names are those of `ninefold.mapping`.
 """

@@ -157,9 +157,7 @@ def _covered(tree: WalkTree, pairs: NodePairs) -> list[list[int]]:
     ]
 
 
-def walkers(
-    tree: WalkTree, pairs: NodePairs, n: int, exit: int, inside: NDArray[np.bool_] | None = None
-) -> list[int]:
+def walkers(tree: WalkTree, pairs: NodePairs, n: int, exit: int, inside: NDArray[np.bool_] | None = None) -> list[int]:
     """Return the variables of which one holds if an exit that a node did not walk is walked by another of its place.
 
     With `inside`, only ways between those nodes count.

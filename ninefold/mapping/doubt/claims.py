@@ -35,7 +35,6 @@ from ninefold.errors import BadInput
 
 from ..robot.units import unit_of
 from ..robot.walk import Walk
-
 from ._congruence import Assertion, Congruence, Core, core_of
 from ._held import some_map
 from .likeness import can_be_one
@@ -221,14 +220,18 @@ def claims(
 # -- reading claims --------------------------------------------------------------------------------------------------------
 
 
-def _claims_of(pairs: ArrayLike | Iterable[tuple[int, int, float]], threshold: float | None, visits: int) -> tuple[Claim, ...]:
+def _claims_of(
+    pairs: ArrayLike | Iterable[tuple[int, int, float]], threshold: float | None, visits: int
+) -> tuple[Claim, ...]:
     if threshold is not None:
         return _claims_of_matrix(pairs, threshold, visits)
     found = []
     try:
         listed = list(pairs)  # type: ignore[arg-type]
     except TypeError:
-        raise BadInput(f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}") from None
+        raise BadInput(
+            f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}"
+        ) from None
     for number, one in enumerate(listed):
         try:
             a, b, score = one
@@ -446,9 +449,7 @@ class _Judging:
             )
         first, second = (self._unit.headings(tree.heading[k, : tree.degree[k]].tolist()) for k in (n, m))
         turned = "" if tree.compass else ", however they are turned"
-        return (
-            f"visits {a} and {b} would be one place, but their exits lie at {first} and at {second} {self._unit.measure}{turned}"
-        )
+        return f"visits {a} and {b} would be one place, but their exits lie at {first} and at {second} {self._unit.measure}{turned}"
 
     def _exit(self, node: int, exit: int) -> str:
         return self._unit.heading(float(self._tree.heading[node, exit]))

@@ -86,9 +86,7 @@ def likeness(tree: WalkTree, *, same: Iterable[tuple[int, int]] = (), differ: It
     return Likeness(shifts, kind, n_kinds, signature, _groups(tree.n_nodes, pairs))
 
 
-def can_be_one(
-    tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether pairs of nodes can be one place under given shifts, (P,); as the table of `likeness` without making it.
 
     Parameters

@@ -71,9 +71,7 @@ class ClosedMaps(NamedTuple):
     exact: bool
 
 
-def closed_maps(
-    tree: WalkTree, alike: Likeness, *, until: float, most: int, most_places: int | None = None
-) -> ClosedMaps:
+def closed_maps(tree: WalkTree, alike: Likeness, *, until: float, most: int, most_places: int | None = None) -> ClosedMaps:
     """Find the closed maps of a walk.
 
     Parameters

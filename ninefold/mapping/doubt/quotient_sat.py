@@ -84,7 +84,9 @@ class QuotientSat:
 
     def __init__(self, tree: WalkTree, alike: Likeness, *, closed: bool = False, most_places: int | None = None) -> None:
         if not tree.compass:
-            raise BadInput("a walk without a compass has no SAT model here: its closing residue depends on more than pairs of nodes")
+            raise BadInput(
+                "a walk without a compass has no SAT model here: its closing residue depends on more than pairs of nodes"
+            )
         self.tree, self.alike = tree, alike
         self.pairs = node_pairs(tree, alike)
         self.closed = closed
