@@ -27,6 +27,8 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.ask_driven import AskDriven
+    from .doubt.doubt_driven import DoubtDriven
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
@@ -37,17 +39,22 @@ if TYPE_CHECKING:
     from .numbering import Dart, Edge, Face, Vertex
     from .plane import PlaneMap
     from .robot.mapper import Closure, Mapper, build
+    from .robot.open_map import OpenMap
     from .robot.simulated import Exploration, explore
     from .robot.simulated_world import SimulatedWorld
+    from .robot.strategies import DepthFirst, NearestFirst, Strategy, WallFollowing
     from .robot.walk import Event, Samples, Visit, Walk, WalkHeader
     from .sets import Line, Point, Region, Set
 
 __all__ = [
     "Again",
+    "AskDriven",
     "Candidate",
     "Closure",
     "Dart",
+    "DepthFirst",
     "Doubt",
+    "DoubtDriven",
     "Edge",
     "Estimate",
     "Event",
@@ -61,16 +68,20 @@ __all__ = [
     "Mapper",
     "Move",
     "Names",
+    "NearestFirst",
+    "OpenMap",
     "PlaneMap",
     "Point",
     "Region",
     "Samples",
     "Set",
     "SimulatedWorld",
+    "Strategy",
     "Vertex",
     "Visit",
     "Walk",
     "WalkHeader",
+    "WallFollowing",
     "bridges",
     "build",
     "circular_mean",
@@ -87,6 +98,8 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.ask_driven": ("AskDriven",),
+        "doubt.doubt_driven": ("DoubtDriven",),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
@@ -98,8 +111,10 @@ __getattr__, __dir__ = attach(
         "numbering": ("Dart", "Edge", "Face", "Vertex"),
         "plane": ("PlaneMap",),
         "robot.mapper": ("Closure", "Mapper", "build"),
+        "robot.open_map": ("OpenMap",),
         "robot.simulated": ("Exploration", "explore"),
         "robot.simulated_world": ("SimulatedWorld",),
+        "robot.strategies": ("DepthFirst", "NearestFirst", "Strategy", "WallFollowing"),
         "robot.walk": ("Event", "Samples", "Visit", "Walk", "WalkHeader"),
         "sets": ("Line", "Point", "Region", "Set"),
     },

@@ -34,6 +34,14 @@ exact under the declared noise.
 `following`    `locate`, `Follower`: a localizer taken along a walk, event by event
 =============  ==================================================================================================
 
+**Where to go, and what two know together.**
+
+==============  =================================================================================================
+`ask_driven`    `AskDriven`: explore until it is settled whether a place is inside a cycle
+`doubt_driven`  `DoubtDriven`: explore until one map is left, where no place is recognised
+`merging`       `merge`, `overlaps`: maps of two robots, laid over each other
+==============  =================================================================================================
+
 `Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can
 be those of a place; ``_ahead`` looks where to go. The public names are those of `ninefold.mapping`.
 """
