@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
     from .doubt.localizer import Candidate, Localizer, Move
+    from .doubt.merging import Merged, Overlaps, merge, overlaps
+    from .doubt.opening import open_map
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
@@ -66,10 +68,12 @@ __all__ = [
     "Line",
     "Localizer",
     "Mapper",
+    "Merged",
     "Move",
     "Names",
     "NearestFirst",
     "OpenMap",
+    "Overlaps",
     "PlaneMap",
     "Point",
     "Region",
@@ -90,6 +94,9 @@ __all__ = [
     "explore",
     "health",
     "locate",
+    "merge",
+    "open_map",
+    "overlaps",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -105,6 +112,8 @@ __getattr__, __dir__ = attach(
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
+        "doubt.merging": ("Merged", "Overlaps", "merge", "overlaps"),
+        "doubt.opening": ("open_map",),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),

@@ -79,7 +79,8 @@ class DoubtDriven:
     Attributes
     ----------
     left
-        Number of maps that explain what was walked, as far as they are known.
+        Number of maps that explain what was walked, as far as they are known: none if there are more places than said, or
+        the search for them was given up.
     exact
         Whether that is all of them.
 
@@ -124,12 +125,12 @@ class DoubtDriven:
         self._plan: list[int] = []
 
     def __call__(self, known: OpenMap) -> int | None:
-        """Return the exit to take, or None when one map is left, or nothing can be told any more."""
+        """Return the exit to take, or None when one map is left or none, or nothing can be told any more."""
         if known.n_places != self._places:  # walking where the tree leads anyway tells nothing
             self._places = known.n_places
             self._look(known)
             self._plan = []
-        if self.exact and self.left == 1 and self._found[0].closed:
+        if not self.left or (self.exact and self.left == 1 and self._found[0].closed):
             return None
         if not self._plan:
             self._plan = self._planned(known)
@@ -152,7 +153,7 @@ class DoubtDriven:
 
     def _planned(self, known: OpenMap) -> list[int]:
         """Return the steps to take, in reverse: by how many exits to turn counter-clockwise from the way back."""
-        maps = self._found or [_map_of_tree(known, self.tolerance)]
+        maps = self._found
         behind = known.came - known.first[known.at] if known.came >= 0 else 0
         start = [
             one.here * _width(one) + (behind + one.shift) % one.degree[one.here] for one in maps if one.degree[one.here]
@@ -266,10 +267,3 @@ def _map_of(tree: WalkTree, alike: Likeness, row: NDArray[np.int64], here: int) 
     degree = np.zeros(places.size, np.int64)
     degree[place] = tree.degree
     return _Map(mate.tolist(), sight.tolist(), degree.tolist(), int(place[here]), int(row[here, 1]), places.size)
-
-
-def _map_of_tree(known: OpenMap, tolerance: float) -> _Map:
-    """Return the tree itself as a map."""
-    tree = _tree_of(known, tolerance)
-    row = np.stack([np.arange(tree.n_nodes), np.zeros(tree.n_nodes, np.int64)], axis=1)
-    return _map_of(tree, likeness(tree), row, known.at)

@@ -38,6 +38,8 @@ class OpenMap:
     ----------
     compass
         Whether headings of different places can be compared.
+    complete
+        Whether all exits of every place are listed.
     names
         Of places, None for one that was not recognised.
     first
@@ -60,6 +62,7 @@ class OpenMap:
     """
 
     compass: bool = True
+    complete: bool = field(default=True, kw_only=True)
     names: list[str | None] = field(default_factory=list)
     first: list[int] = field(default_factory=lambda: [0])
     place: list[int] = field(default_factory=list, repr=False)
