@@ -124,6 +124,11 @@ class Members(NamedTuple):
     shift: NDArray[np.int64]
     walkers: dict[int, list[tuple[int, int]]]
 
+    def dart(self, node: int, exit: int) -> int:
+        """Return the exit of a place that an exit of a node is."""
+        width = self.tree.heading.shape[1]
+        return int(self.place[node]) * width + (exit + int(self.shift[node])) % int(self.tree.degree[node])
+
 
 def members(
     tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], inside: NDArray[np.bool_] | None = None
@@ -146,29 +151,18 @@ def steps(quotient: Members, node: int, exit: int) -> list[Step]:
     Complexity O(ways of the face times nodes that walked one exit).
     """
     ahead = _onward(quotient, node, exit)
-    first = next(ahead)
-    begun = first
-    key = _dart(quotient, first)
+    first = begun = next(ahead)
     while first.node == first.walker:
         first = next(ahead)
-        if _dart(quotient, first) == key:
+        if quotient.dart(first.node, first.exit) == quotient.dart(begun.node, begun.exit):
             break
-    if first.node == first.walker:  # no other node is met: the face of a tree
-        first = begun
-    key = _dart(quotient, first)
     found = [first]
     for step in ahead:
-        if _dart(quotient, step) == key:
+        if quotient.dart(step.node, step.exit) == quotient.dart(first.node, first.exit):  # perhaps come to by another node than before: that is what closes it
+            found[0] = Step(step.node, step.exit, first.walker, first.walked, step.corner)
             break
         found.append(step)
     return found
-
-
-def _dart(quotient: Members, step: Step) -> int:
-    tree = quotient.tree
-    width = tree.heading.shape[1]
-    degree = int(tree.degree[step.node])
-    return int(quotient.place[step.node]) * width + (step.exit + int(quotient.shift[step.node])) % degree
 
 
 def _onward(quotient: Members, node: int, exit: int) -> Iterator[Step]:

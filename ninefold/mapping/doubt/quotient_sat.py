@@ -26,7 +26,7 @@ from ninefold.encodings.sat import open_solver
 from ninefold.errors import BadInput
 
 from ._node_pairs import clauses, node_pairs, walkers
-from ._quotient_faces import Face, Step, faces, members, room, smallest_part, steps
+from ._quotient_faces import Face, Members, Step, faces, members, room, smallest_part, steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -214,9 +214,10 @@ class QuotientSat:
         for face, other in combinations(outer, 2):
             found.append((made[face] | made[other] | self._one_face(walk[face], walk[other]), (face, other)))
         if not found:
-            found.append((set().union(*made.values()), tuple(around)))
-        cuts = [Cut(tuple(sorted(clause)), which, tuple(part.tolist())) for clause, which in found]
-        return min(cuts, key=lambda cut: (len(cut.clause), cut))
+            found.append((set().union(*made.values()) | self._nothing_else(at, list(walk.values())), tuple(around)))
+        clause, which = min(found, key=lambda one: (len(one[0]), one[1]))
+        begins = tuple(Face(walk[face][0].walker, walk[face][0].walked, face.turns) for face in which)
+        return Cut(tuple(sorted(clause)), begins, tuple(part.tolist()))
 
     def _made_by(self, around: list[Step], inside: NDArray[np.bool_]) -> set[int]:
         """Return literals of which one holds if a face is not as it was walked."""
@@ -227,6 +228,18 @@ class QuotientSat:
                 literals.add(-self.pairs.table[step.node, step.walker, along])
             for x in step.corner:
                 literals.update(walkers(self.tree, self.pairs, step.node, x, inside))
+        return literals
+
+    def _nothing_else(self, at: Members, walks: list[list[Step]]) -> set[int]:
+        """Return literals of which one holds if some way back along a face belongs to none of them."""
+        walker = {at.dart(step.walker, step.walked): step for walk in walks for step in walk}
+        literals = set()
+        for step in walker.values():
+            node, exit = int(self.tree.other[step.walker, step.walked]), int(self.tree.back[step.walker, step.walked])
+            back = walker[at.dart(node, exit)]
+            if back.walker != node:
+                along = (back.walked - exit) % int(self.tree.degree[node])
+                literals.add(-self.pairs.table[node, back.walker, along])
         return literals
 
     def _fewer_rounds(self, around: list[Step], turns: int) -> set[int]:
