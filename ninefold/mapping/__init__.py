@@ -27,6 +27,10 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.ambiguities import ambiguity
+    from .doubt.backbone import Backbone
+    from .doubt.completeness import Completeness
+    from .doubt.completeness_check import listed_maps
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
@@ -45,8 +49,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Again",
+    "Backbone",
     "Candidate",
     "Closure",
+    "Completeness",
     "Dart",
     "Doubt",
     "Edge",
@@ -74,6 +80,7 @@ __all__ = [
     "Visit",
     "Walk",
     "WalkHeader",
+    "ambiguity",
     "bridges",
     "build",
     "circular_mean",
@@ -82,6 +89,7 @@ __all__ = [
     "explore",
     "health",
     "hypotheses",
+    "listed_maps",
     "locate",
     "shortest_path",
     "unwrap",
@@ -91,6 +99,10 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.ambiguities": ("ambiguity",),
+        "doubt.backbone": ("Backbone",),
+        "doubt.completeness": ("Completeness",),
+        "doubt.completeness_check": ("listed_maps",),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),

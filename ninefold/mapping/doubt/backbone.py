@@ -1,8 +1,9 @@
 """What all maps that explain a walk agree on: which visits are certainly one place, and which certainly are not.
 
-Where all maps are listed they are compared. Where they are too many to list, a SAT solver is asked, pair by pair, whether there
-is a map in which the two are one place, and one in which they are not; every map it finds answers for many pairs at once. Where
-that cannot be asked either, without a compass, what folding, headings, names and congruence exclude is still certain.
+Where all maps are listed they are compared. Where they are too many to list, a SAT solver is asked, pair by pair, whether
+there is a map in which the two are one place, and one in which they are not; every map it finds answers for many pairs at
+once. Where that cannot be asked either, without a compass, what folding, headings, names and congruence exclude is still
+certain.
 """
 
 from __future__ import annotations
@@ -88,7 +89,8 @@ class Backbone:
         return None if verdict == OPEN else verdict == SAME
 
     def __str__(self) -> str:
-        return f"{len(self.same)} pairs of visits certainly one place, {len(self.different)} certainly two, {len(self.open)} open"
+        same, different, left = len(self.same), len(self.different), len(self.open)
+        return f"{same} pairs of visits certainly one place, {different} certainly two, {left} open"
 
 
 def backbone_of(
@@ -176,9 +178,7 @@ def _by_congruence(tree: WalkTree, alike: Likeness, pairs: NodePairs) -> NDArray
     return certain
 
 
-def _asked(
-    sat: QuotientSat, certain: NDArray[np.int8], maps: Sequence[NDArray[np.int64]], until: float
-) -> bool | None:
+def _asked(sat: QuotientSat, certain: NDArray[np.int8], maps: Sequence[NDArray[np.int64]], until: float) -> bool | None:
     """Settle the pairs that are open; return whether all are, or None if there is no map."""
     one, two = _seen(sat.tree.n_nodes, maps)
     if not len(maps):

@@ -1,17 +1,17 @@
 """Evidence that a list of maps is all that explain a walk: a formula in CNF, and its refutation in DRAT.
 
-The formula says what holds of every plane map that explains the walk and is none of those listed; it cannot be satisfied. Every
-clause has its reason, in comments before the header:
+The formula says what holds of every plane map that explains the walk and is none of those listed; it cannot be satisfied.
+Every clause has its reason, in comments before the header:
 
-- ``c variable 17 pair 3 8 1``: variable 17 says that nodes 3 and 8 of the folded walk are one place, exit x of the one being exit
-  x + 1 of the other;
+- ``c variable 17 pair 3 8 1``: variable 17 says that nodes 3 and 8 of the folded walk are one place, exit x of the one being
+  exit x + 1 of the other;
 - ``c clauses 1 5000 transitive``, and so for ``congruent``, ``covered`` and ``together``: see `_node_pairs`;
-- ``c clause 6001 cut 2 3 9 face 2 1 0``: nodes 2, 3 and 9 of the tree have a face that begins at exit 1 of node 2 and turns 0
-  times; see `quotient_sat`;
+- ``c clause 6001 cut 2 3 9 face 2 1 0``: nodes 2, 3 and 9 of the tree have a face that begins at exit 1 of node 2 and turns
+  0 times; see `quotient_sat`;
 - ``c clause 6002 map``, then the place of every node, then its shift: a map that was listed, and that the clause excludes.
 
-That the formula cannot be satisfied, any checker of DRAT confirms. That every clause holds, `completeness_check` confirms from the
-folded walk alone; it shares no code with what found the maps.
+That the formula cannot be satisfied, any checker of DRAT confirms. That every clause holds, `completeness_check` confirms
+from the folded walk alone; it shares no code with what found the maps.
 """
 
 from __future__ import annotations
@@ -129,8 +129,10 @@ def completeness(
         excluding = [sat.excluding(one) for one in maps]
         another = sat.solved(seconds=max(until - monotonic(), 1e-3))
         if another is not None:
-            raise BadInput(f"{counted(len(maps), 'map')} listed, and there is another with "
-                           f"{counted(np.unique(another[:, 0]).size, 'place')}")
+            raise BadInput(
+                f"{counted(len(maps), 'map')} listed, and there is another with "
+                f"{counted(np.unique(another[:, 0]).size, 'place')}"
+            )
         cuts = sat.cuts
         if not sat.done:
             raise _spent(until)
@@ -161,9 +163,7 @@ def completeness(
     lines.append(f"p cnf {pairs.n_variables} {len(formula)}")
     lines += [" ".join(map(str, [*clause, 0])) for clause in formula]
     derived = sum(not line.startswith(b"d") for line in proof.splitlines())
-    return Completeness(
-        ("\n".join(lines) + "\n").encode(), proof, len(maps), pairs.n_variables, len(formula), derived
-    )
+    return Completeness(("\n".join(lines) + "\n").encode(), proof, len(maps), pairs.n_variables, len(formula), derived)
 
 
 def _spent(until: float) -> TooLarge:

@@ -1,8 +1,8 @@
 """Checks the formula of a `Completeness` against the folded walk, clause by clause, in plain Python.
 
-Nothing is shared with what found the maps: neither the search, nor the solver's clauses, nor the reading of faces. A clause holds if
-denying all of its literals cannot be a plane map that explains the walk; which argument shows it, the comments say, and each is
-gone through again here. That the formula has no solution is for a checker of DRAT to confirm.
+Nothing is shared with what found the maps: neither the search, nor the solver's clauses, nor the reading of faces. A clause
+holds if denying all of its literals cannot be a plane map that explains the walk; which argument shows it, the comments say,
+and each is gone through again here. That the formula has no solution is for a checker of DRAT to confirm.
 """
 
 from __future__ import annotations
@@ -16,12 +16,15 @@ import numpy as np
 from ninefold.errors import BadInput, NotPlane
 
 from ..heading import wrap
+from .hypotheses import plane_of
+from .walk_tree import fold
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
+    from ..robot.walk import Walk
     from .walk_tree import WalkTree
 
 __all__ = ["listed_maps"]
@@ -31,32 +34,50 @@ Dart = tuple[int, int]
 
 
 def listed_maps(
-    tree: WalkTree,
+    walk: Walk,
     cnf: bytes,
     *,
+    tolerance: float | None = None,
     same: Iterable[tuple[int, int]] = (),
     differ: Iterable[tuple[int, int]] = (),
-) -> list[tuple[NDArray[np.int64], NDArray[np.int64]]]:
-    """Check that every clause of a formula holds of all maps but those that it lists; return these, place and shift each.
+) -> list[NDArray[np.int64]]:
+    """Check that every clause of a formula holds of all maps that explain a walk but those that it lists; return these.
+
+    With a refutation of the formula that a checker of DRAT accepts, they are all maps there are.
 
     Parameters
     ----------
-    same, differ
-        Pairs of nodes known to be one place, and two, beside those whose names say so.
+    cnf
+        As `Hypotheses.evidence` gives it.
+    tolerance, same, differ
+        As `hypotheses` was given them.
+
+    Returns
+    -------
+    list
+        The place of every visit, (T,) int64 each.
 
     Raises
     ------
     BadInput
-        With the first clause whose reason does not hold, or for what is no such formula.
-    NotPlane
-        If a map that is listed is none.
+        With the first clause whose reason does not hold, for a map listed that is none, and for what is no such formula.
+
+    Notes
+    -----
+    Complexity O(clauses times N K).
     """
-    return _Check(tree, list(same), list(differ)).run(cnf.decode())
+    tree = fold(walk, tolerance=tolerance)
+    at: list[int] = tree.node_of.tolist()
+    check = _Check(tree, [(at[a], at[b]) for a, b in same], [(at[a], at[b]) for a, b in differ])
+    return [place[tree.node_of] for place in check.run(cnf.decode())]
 
 
 @dataclass(slots=True)
 class _Merged:
-    """Nodes that are one place as far as some pairs say so, by union and find; a node's exit x is exit x + shift of its root."""
+    """Nodes that are one place as far as some pairs say so, by union and find.
+
+    A node's exit x is exit x + shift of its root.
+    """
 
     tree: _Tree
     parent: dict[int, tuple[int, int]]
@@ -117,9 +138,9 @@ class _Check:
         self.pair: dict[int, Pair] = {}
         self.number: dict[Pair, int] = {}
         self.closed = False
-        self.maps: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = []
+        self.maps: list[NDArray[np.int64]] = []
 
-    def run(self, text: str) -> list[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    def run(self, text: str) -> list[NDArray[np.int64]]:
         lines = text.splitlines()
         head = next((i for i, line in enumerate(lines) if line.startswith("p cnf ")), None)
         if head is None or lines[:1] != ["c ninefold maps 1"]:
@@ -133,9 +154,9 @@ class _Check:
                 case ["variable", x, "pair", n, m, k]:
                     self._variable(int(x), (int(n), int(m), int(k)))
                 case ["clauses", first, last, kind]:
-                    reason.update(dict.fromkeys(range(int(first), int(last) + 1), [kind]))
-                case ["clause", number, *rest]:
-                    reason[int(number)] = rest
+                    reason.update((number, [kind]) for number in range(int(first), int(last) + 1))
+                case ["clause", which, *rest]:
+                    reason[int(which)] = rest
         covered = self._coverings()
         for number, clause in enumerate(clauses, 1):
             why = reason.get(number, ["nothing"])
@@ -240,7 +261,9 @@ class _Check:
             return False
         n, m = nodes.pop()
         named = self.tree.names[n] is not None and self.tree.names[n] == self.tree.names[m]
-        return (named or self._said_same(n, m)) and {self.number.get((n, m, k)) for k in self.tree.shifts(n, m)} <= set(clause)
+        return (named or self._said_same(n, m)) and {self.number.get((n, m, k)) for k in self.tree.shifts(n, m)} <= set(
+            clause
+        )
 
     def _said_same(self, n: int, m: int) -> bool:
         """Whether a chain of pairs known to be one place joins two nodes."""
@@ -323,10 +346,8 @@ class _Check:
         root, shift = merged.find(n)
         return root, (x + shift) % self.tree.degree[n]
 
-    def _walked(
-        self, begin: Dart, inside: set[int], merged: _Merged, literals: set[int]
-    ) -> tuple[list[Dart], int] | None:
-        """Walk a face; return the exits by which nodes went along it and how often it turns, or None if it is not certain."""
+    def _walked(self, begin: Dart, inside: set[int], merged: _Merged, literals: set[int]) -> tuple[list[Dart], int] | None:
+        """Walk a face; return the exits by which nodes went along it and how often it turns, None if that is not certain."""
         tree = self.tree
         walkers: dict[Dart, list[Dart]] = {}
         for n in sorted(inside):
@@ -342,19 +363,14 @@ class _Check:
             darts.append(at)
             m, y = tree.other[n][x], tree.back[n][x]
             total += tree.turn[n][x] + wrap(tree.heading[m][y] - pi - tree.heading[n][x] - tree.turn[n][x])
-            z = y
-            while True:
-                z = (z - 1) % tree.degree[m]
-                key = self._root(merged, m, z)
-                if key in walkers:
-                    break
-                if any(x not in literals for x in self._walkers(m, z, inside)):
+            z = (y - 1) % tree.degree[m]
+            while (key := self._root(merged, m, z)) not in walkers:
+                if any(number not in literals for number in self._walkers(m, z, inside)):
                     return None  # somebody may have walked here
-            corner = (tree.heading[m][y] - tree.heading[m][z]) % (2 * pi)
-            total += pi - (corner if z != y else 2 * pi)
-            after = begin if key == start else min(walkers[key], key=lambda dart: (abs(dart[0] - m), dart[0]))
-            total += wrap(tree.heading[after[0]][after[1]] - tree.heading[m][z])
-            at = after
+                z = (z - 1) % tree.degree[m]
+            total += pi - ((tree.heading[m][y] - tree.heading[m][z]) % (2 * pi) if z != y else 2 * pi)
+            at = begin if key == start else min(walkers[key], key=lambda dart: (abs(dart[0] - m), dart[0]))
+            total += wrap(tree.heading[at[0]][at[1]] - tree.heading[m][z])
             if key == start:
                 return darts, round(total / (2 * pi))
         return None
@@ -363,30 +379,28 @@ class _Check:
 
     def _excludes(self, clause: list[int], words: list[int]) -> bool:
         """Whether a clause excludes one map and nothing else; the map is checked, and noted."""
-        from .hypotheses import plane_of
-
-        count = len(self.tree.degree)
+        degree = self.tree.degree
+        count = len(degree)
         if len(words) != 2 * count:
             return False
         place, shift = words[:count], words[count:]
         lead: dict[int, int] = {}
         literals = set(clause)
+        relative = []
         for n, w in enumerate(place):
             first = lead.setdefault(w, n)
-            if first == n:
-                if any(self.number.get((m, n, k)) not in literals for m in lead.values() if m != n for k in self.tree.shifts(m, n)):
+            relative.append((shift[n] - shift[first]) % max(degree[n], 1))
+            if first != n:
+                if -self.number.get((n, first, relative[n]), 0) not in literals:
                     return False
                 continue
-            k = (shift[n] - shift[first]) % self.tree.degree[n] if self.tree.degree[n] else 0
-            if -self.number.get((n, first, k), 0) not in literals:
-                return False
-        _, number = np.unique(place, return_inverse=True)
-        ranked = list(dict.fromkeys(number.tolist()))
-        numbered = np.array([ranked.index(w) for w in number.tolist()], np.int64)
-        relative = np.array([(shift[n] - shift[lead[w]]) % max(self.tree.degree[n], 1) for n, w in enumerate(place)], np.int64)
+            for m in lead.values():
+                if m != n and any(self.number.get((m, n, k)) not in literals for k in self.tree.shifts(m, n)):
+                    return False
+        numbered = [list(lead).index(w) for w in place]
         try:
-            plane_of(self.walk, numbered, relative)
+            plane_of(self.walk, np.array(numbered, np.int64), np.array(relative, np.int64))
         except NotPlane as error:
             raise BadInput(f"a map that is listed is none: {error}") from error
-        self.maps.append((numbered, relative))
+        self.maps.append(np.array(numbered, np.int64))
         return True

@@ -20,6 +20,8 @@ from ninefold.errors import BadInput
 from ..heading import TAU
 from ..plane import PlaneMap
 from ..robot.walk import Walk
+from .backbone import Backbone, backbone_of
+from .completeness import Completeness, completeness
 from .likeness import Likeness, likeness
 from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
@@ -94,6 +96,8 @@ class Hypotheses:
         Why no map explains the walk, if that shows in a stretch of it.
     seconds
         What the search took.
+    wanted, most_places
+        What was asked for, as `closed` and `max_places` of `hypotheses`.
     """
 
     tree: WalkTree = field(repr=False)
@@ -103,6 +107,8 @@ class Hypotheses:
     exact: bool
     contradiction: Contradiction | None
     seconds: float
+    wanted: bool | None = field(default=None, repr=False)
+    most_places: int | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.maps)
@@ -114,6 +120,60 @@ class Hypotheses:
     def ambiguity(self) -> float | None:
         """Bits that the walk leaves open: the logarithm to base 2 of the number of maps; None where it is not known."""
         return log2(self.count) if self.exact and self.count else None
+
+    def backbone(self, *, budget: float = 10.0) -> Backbone | None:
+        """Return what all maps agree on, also where they are too many to list; None if there is no map.
+
+        Parameters
+        ----------
+        budget
+            Seconds that a solver may be asked for, where not all maps are kept.
+
+        Examples
+        --------
+        >>> from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader, hypotheses
+        >>> north, south = Heading.from_degrees(90), Heading.from_degrees(270)
+        >>> place, leg = Visit(None, exits=(north, south)), Samples.of(north, north)
+        >>> back = Samples.of(south, south)
+        >>> found = hypotheses(Walk(WalkHeader(), (place, leg, place, leg, place, back, place))).backbone()
+        >>> found.known(1, 3), found.known(0, 2), found.open.shape
+        (True, False, (0, 2))
+        """
+        complete = self.exact and len(self.maps) == self.count
+        return backbone_of(
+            self.tree,
+            self.alike,
+            [one.place for one in self.maps],
+            complete=complete,
+            closed=self.wanted is True,
+            narrowed=self.most_places is not None or self.wanted is False,
+            budget=budget,
+        )
+
+    def evidence(self, *, budget: float | None = None) -> Completeness:
+        """Return evidence, for programs that are not ours, that the maps are all that explain the walk.
+
+        Parameters
+        ----------
+        budget
+            Seconds, 600 if left out.
+
+        Raises
+        ------
+        BadInput
+            Where there is none to give: the count is not exact, not all maps were kept, or only some were asked for.
+        TooLarge
+            When the budget is spent.
+        """
+        if not self.exact or len(self.maps) != self.count:
+            raise BadInput("only an exact count of maps that are all kept has evidence; give a larger budget or limit")
+        if self.contradiction is not None or self.most_places is not None or self.wanted is False:
+            raise BadInput(
+                "evidence is about all maps, or all closed ones, of a walk that does not contradict itself: leave out "
+                "max_places, and let closed be None or True"
+            )
+        maps = [np.stack([one.place, one.shift], axis=1) for one in self.maps]
+        return completeness(self.tree, self.alike, maps, closed=self.wanted is True, budget=budget)
 
 
 def hypotheses(
@@ -169,7 +229,7 @@ def hypotheses(
         number, whole = _open_maps(tree, alike, found, most, max_places, until, closed=count if closed is None else 0)
         count, exact = count + number, exact and whole
     found.sort(key=lambda one: (not one.closed, one.n_places, one.place.tolist()))
-    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, None, monotonic() - begun)
+    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, None, monotonic() - begun, closed, max_places)
 
 
 def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -188,7 +248,7 @@ def _closed_maps(
     """Find the closed maps; return (count, whether all)."""
     outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places)
     found += [_hypothesis(tree, places) for places in outcome.maps]
-    return outcome.count, outcome.exact
+    return outcome.found, outcome.exact
 
 
 def _open_maps(
