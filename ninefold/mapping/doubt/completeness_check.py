@@ -69,7 +69,12 @@ def listed_maps(
     tree = fold(walk, tolerance=tolerance)
     at: list[int] = tree.node_of.tolist()
     check = _Check(tree, [(at[a], at[b]) for a, b in same], [(at[a], at[b]) for a, b in differ])
-    return [place[tree.node_of] for place in check.run(cnf.decode())]
+    try:
+        return [place[tree.node_of] for place in check.run(cnf.decode())]
+    except (ValueError, LookupError) as error:
+        if isinstance(error, BadInput):
+            raise
+        raise BadInput(f"the formula is damaged, or of another walk: {error}") from error
 
 
 @dataclass(slots=True)
