@@ -62,8 +62,8 @@ def test_pairs_and_single_questions_say_the_same():
 
 
 def test_where_maps_are_too_many_to_list():
-    """Thousands of maps at least: what they agree on is settled pair by pair."""
-    walk, places = covering(4, 5, 0)
+    """Tens of thousands of maps at least: what they agree on is settled pair by pair."""
+    walk, places = covering(5, 5, 0)
     found = hypotheses(walk, limit=10, budget=0.2)
     assert not found.exact
     agreed = found.backbone(budget=60)
