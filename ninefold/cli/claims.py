@@ -33,8 +33,8 @@ def claims(
 ) -> int:
     """Name the loop closures that cannot be right, and why.
 
-    A loop of odometry and closures must come back to where it began, within the errors that the file declares. Exit code 1 if
-    any closure is rejected.
+    A loop of odometry and closures must come back to where it began, within the errors that the file declares. Exit code 1
+    if any closure is rejected.
     """
     from ninefold._files import refuse_existing
     from ninefold.io.graphs.closures import judge_closures
@@ -50,7 +50,7 @@ def claims(
     if out is not None:
         write_without(read, [one.edge for one in judged.rejected], out, force=force)
     if judged.silent:
-        note(f"no loop says anything about {counted(judged.silent, 'closure')}: the heading is lost on the way, or odometry is")
+        note(f"no loop says anything about {counted(judged.silent, 'closure')}: on the way the heading is lost, or odometry")
     if as_json:
         print_json(
             {

@@ -39,7 +39,9 @@ def cheapest_choice(
     from pysat.examples.rc2 import RC2Stratified
     from pysat.formula import WCNF
 
-    exact = [Fraction(score) for score in scores]  # of a common denominator they are whole numbers, whatever floats they were
+    exact = [
+        Fraction(score) for score in scores
+    ]  # of a common denominator they are whole numbers, whatever floats they were
     scale = math.lcm(1, *(score.denominator for score in exact))
     first = 1 + sum(map(len, readings))
     formula = WCNF()

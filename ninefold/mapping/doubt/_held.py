@@ -115,9 +115,7 @@ def merged(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -
     )
 
 
-def _unfolded(
-    tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], found: NDArray[np.int64]
-) -> Hypothesis:
+def _unfolded(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], found: NDArray[np.int64]) -> Hypothesis:
     """Return a quotient of the merged walk as one of the walk itself, places in the order of their first visits."""
     raw, turned = found[place, 0], shift + found[place, 1]
     _, first, number = np.unique(raw, return_index=True, return_inverse=True)

@@ -4,7 +4,7 @@ A recogniser that goes by looks says of pairs of visits that they are one place,
 together: whatever is not to be held true is rejected so that the scores of the rejected sum to the least. Two things can
 speak against claims.
 
-**Congruence.** One place has one list of exits, and every exit leads one way. So claims have consequences, from place to place
+**Congruence.** One place has one list of exits, and every exit leads one way. So claims have consequences, place by place
 along the ways that were walked, and where these clash the claims behind the clash cannot all be right. That holds whatever
 other places are the same; see `_congruence`.
 
@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,7 +35,6 @@ from ninefold.errors import BadInput
 
 from ..robot.units import unit_of
 from ..robot.walk import Walk
-
 from ._congruence import Assertion, Congruence, Core, core_of
 from ._held import some_map
 from .likeness import can_be_one
@@ -91,8 +90,8 @@ class Rejection:
     claim
         The claim.
     against
-        Other claims that it contradicts: all of them and it cannot be right together, and leaving out any one of them it can.
-        None where it cannot be right by itself.
+        Other claims that it contradicts: all of them and it cannot be right together, and leaving out any one of them it
+        can. None where it cannot be right by itself.
     visits
         Two visits that would then be the same place and cannot be; None where no clash of two places shows it, only that no
         plane map holds all these claims.
@@ -170,8 +169,8 @@ def claims(
     closed
         Whether the walk left no exit untravelled. Then much fewer maps are legal, and more wrong claims are found.
     budget
-        Seconds, 60 if left out, after which no more maps are searched for; with 0, claims are judged by congruence and by the
-        map alone that they themselves make.
+        Seconds, 60 if left out, after which no more maps are searched for; with 0, claims are judged by congruence and by
+        the map alone that they themselves make.
     tolerance
         Radians within which two headings may be of one exit, instead of the header's.
 
@@ -221,14 +220,18 @@ def claims(
 # -- reading claims --------------------------------------------------------------------------------------------------------
 
 
-def _claims_of(pairs: ArrayLike | Iterable[tuple[int, int, float]], threshold: float | None, visits: int) -> tuple[Claim, ...]:
+def _claims_of(
+    pairs: ArrayLike | Iterable[tuple[int, int, float]], threshold: float | None, visits: int
+) -> tuple[Claim, ...]:
     if threshold is not None:
         return _claims_of_matrix(pairs, threshold, visits)
     found = []
     try:
-        listed = list(pairs)  # type: ignore[arg-type]
+        listed: list[Any] = list(pairs)  # type: ignore[arg-type]
     except TypeError:
-        raise BadInput(f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}") from None
+        raise BadInput(
+            f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}"
+        ) from None
     for number, one in enumerate(listed):
         try:
             a, b, score = one
@@ -254,7 +257,8 @@ def _claims_of_matrix(matrix: object, threshold: float, visits: int) -> tuple[Cl
     if alike.shape != (visits, visits):
         shape = " x ".join(map(str, alike.shape)) or "a single number"
         raise BadInput(
-            f"how alike visits look is {shape}, and the walk has {counted(visits, 'visit')}; the matrix is {visits} x {visits}"
+            f"how alike visits look is {shape}, and the walk has {counted(visits, 'visit')}; give a matrix of "
+            f"{visits} x {visits}"
         )
     wrong = np.argwhere(~np.isfinite(alike))
     if wrong.size:
@@ -332,7 +336,7 @@ class _Judging:
         return found + [core for k in suspects for core in self._against(k, left)]
 
     def _against(self, suspect: int, agreed: dict[int, Assertion]) -> list[Core]:
-        """Return clashes of a suspect with others that agree, no two with another in common, until rejecting it is cheaper."""
+        """Return clashes of a suspect with others that agree, until rejecting it is cheaper; it alone is in two of them."""
         left = dict(agreed)
         left[suspect] = self._assertions[suspect]
         found: list[Core] = []
@@ -420,6 +424,7 @@ class _Judging:
     def _words(self, clash: Clash) -> str:
         """Say how two nodes cannot be one place."""
         p, q = self._visit(clash.node), self._visit(clash.other)
+        way = self._exit(clash.node, clash.exit)
         match clash.kind:
             case "exits":
                 return self._unlike(clash.node, clash.other, p, q)
@@ -428,14 +433,11 @@ class _Judging:
                 return f"visits {p} and {q} would be one place, but they are called {names[0]} and {names[1]}"
             case "twice":
                 return (
-                    f"visits {p} and {q} would be one place, the exit at {self._exit(clash.node, clash.exit)} of the one being "
+                    f"visits {p} and {q} would be one place, the exit at {way} of the one being "
                     f"that at {self._exit(clash.other, clash.as_exit)} of the other, and by another way the same one"
                 )
             case "back":
-                return (
-                    f"the way out of visit {p} at {self._exit(clash.node, clash.exit)} would come back by the very exit that "
-                    "it leaves by"
-                )
+                return f"the way out of visit {p} at {way} would come back by the very exit that it leaves by"
 
     def _unlike(self, n: int, m: int, a: int, b: int) -> str:
         tree = self._tree
@@ -446,12 +448,11 @@ class _Judging:
             )
         first, second = (self._unit.headings(tree.heading[k, : tree.degree[k]].tolist()) for k in (n, m))
         turned = "" if tree.compass else ", however they are turned"
-        return (
-            f"visits {a} and {b} would be one place, but their exits lie at {first} and at {second} {self._unit.measure}{turned}"
-        )
+        lie = f"{first} and at {second} {self._unit.measure}{turned}"
+        return f"visits {a} and {b} would be one place, but their exits lie at {lie}"
 
-    def _exit(self, node: int, exit: int) -> str:
-        return self._unit.heading(float(self._tree.heading[node, exit]))
+    def _exit(self, node: int, number: int) -> str:
+        return self._unit.heading(float(self._tree.heading[node, number]))
 
     def _visit(self, node: int) -> int:
         """Return the first visit of a node."""

@@ -81,9 +81,7 @@ def likeness(tree: WalkTree, *, same: Iterable[tuple[int, int]] = (), differ: It
     return Likeness(shifts, kind, n_kinds, signature, _groups(tree.n_nodes, pairs))
 
 
-def can_be_one(
-    tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether pairs of nodes can be one place under given shifts, (P,); as the table of `likeness` without making it.
 
     Parameters
@@ -109,7 +107,7 @@ def can_be_one(
     for off in frames:
         off = off - TAU * np.round(off / TAU)
         found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
-    return found & (tree.degree[m] == degree)
+    return np.asarray(found & (tree.degree[m] == degree))
 
 
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:
