@@ -54,7 +54,7 @@ __all__ = ["Claim", "Claims", "Rejection", "claims"]
 BUDGET = 60.0
 """Seconds that the search for maps may take, if nothing else is asked for."""
 
-TRIES = 20
+TRIES = 12
 """How often to try to make a set of claims that clash smaller before the cheapest to reject are chosen."""
 
 LISTED = 6
@@ -403,12 +403,12 @@ class _Judging:
 
     def _why(self, reading: int, chosen: dict[int, int]) -> Core:
         """Return what speaks against a rejected assertion: others that are kept, if these alone convict it."""
-        kept = {k: self._assertions[k] for k in chosen.values()}
-        core = core_of(self._congruence, kept | {reading: self._assertions[reading]})
-        if core is not None:
-            return core
-        known = set(kept)
-        return min((one for one in self._cores if reading in one.members), key=lambda one: len(set(one.members) - known))
+        kept = set(chosen.values())
+        cores = [one for one in self._cores if reading in one.members]
+        enough = [one.members for one in cores if one.clash is not None and kept.issuperset(set(one.members) - {reading})]
+        others = min(enough, key=len, default=kept)
+        core = core_of(self._congruence, {k: self._assertions[k] for k in [*sorted(set(others) - {reading}), reading]})
+        return min(cores, key=lambda one: len(set(one.members) - kept)) if core is None else core
 
     def _reason(self, others: tuple[Claim, ...], clash: Clash | None) -> str:
         given = ""
