@@ -361,3 +361,11 @@ def test_a_matrix_with_nan_says_where():
         claims(walk, look, threshold=0.5)
     with pytest.raises(BadInput, match="claims are about a Walk"):
         claims(true, [])
+
+
+def test_no_claims_are_no_trouble():
+    walk, true = grid_walk(3, 3, 0)
+    found = claims(walk, [], closed=True)
+    assert (found.claims, found.rejected, found.kept, found.cost) == ((), (), (), 0)
+    assert found.exact
+    assert found.map.n_places == len(set(true))

@@ -209,3 +209,28 @@ def test_a_break_in_the_odometry_leaves_pairs_of_closures():
     assert "it contradicts 3 closures that are kept" in judged.rejected[0].reason
     lonely = judge_closures(parse("\n".join([*SQUARE, *other, across[0]]).encode(), "x.g2o"))
     assert (lonely.rejected, lonely.silent) == ((), 1)
+
+
+def test_a_graph_without_closures_has_nothing_to_judge():
+    judged = judge_closures(parse("\n".join(SQUARE).encode(), "x.g2o"))
+    assert (judged.rejected, judged.silent, judged.exact) == ((), 0, True)
+
+
+def test_closures_that_clash_at_random_are_told_apart_within_a_budget(tmp_path, capsys):
+    """Two robots whose closures are noise: to find the fewest to reject is hard, and a budget ends it."""
+    rng = np.random.default_rng(0)
+    lines = [f"EDGE_SE2 {k + s} {k + s + 1} 1 0 0 1e4 0 0 1e4 0 1e4" for s in (0, 1000) for k in range(200)]
+    lines += [
+        f"EDGE_SE2 {k} {1000 + k} {rng.normal(0, 2)} {rng.normal(0, 2)} 0 40 0 0 40 0 1e4" for k in rng.permutation(200)
+    ]
+    (tmp_path / "noise.g2o").write_text("\n".join(lines) + "\n")
+    code, out, err = answer(capsys, "claims", str(tmp_path / "noise.g2o"), "--budget", "0.2", "--json")
+    found = json.loads(out)
+    assert code == 3
+    assert not found["exact"]
+    assert "the budget is spent" in err
+    graph = read_pose_graph(tmp_path / "noise.g2o")
+    gone = {(one["a"], one["b"]) for one in found["rejected"]}
+    kept = [line for line in lines if (int(line.split()[1]), int(line.split()[2])) not in gone]
+    assert judge_closures(parse("\n".join(kept).encode(), "x.g2o")).rejected == ()  # what is left agrees
+    assert len(kept) < len(graph.lines)

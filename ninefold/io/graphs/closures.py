@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ninefold._wording import counted
-from ninefold.encodings.choice import cheapest_choice
+from ninefold.encodings.choice import cheapest_choice, quick_choice
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,6 +35,9 @@ __all__ = ["LOST", "ODDS", "JudgedClosures", "RejectedClosure", "judge_closures"
 
 ODDS = 1e-9
 """Misses less likely than this convict."""
+
+BUDGET = 60.0
+"""Seconds for choosing the fewest, if nothing else is asked for."""
 
 LOST = 0.5
 """Standard deviation of the heading around a loop, radians, beyond which first-order error propagation means nothing."""
@@ -82,11 +85,14 @@ class JudgedClosures:
         Closures rejected, in the order of the file.
     silent
         Closures that no loop says anything about.
+    exact
+        Whether no fewer could be rejected. False where the budget was spent.
     """
 
     graph: PoseGraph = field(repr=False)
     rejected: tuple[RejectedClosure, ...]
     silent: int
+    exact: bool
 
 
 class _Frames(NamedTuple):
@@ -116,13 +122,16 @@ class _Loops(NamedTuple):
     ratio: Floats
 
 
-def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedClosures:
+def judge_closures(graph: PoseGraph, *, headings_only: bool = False, budget: float | None = None) -> JudgedClosures:
     """Judge the loop closures of a pose graph.
 
     Parameters
     ----------
     headings_only
         Whether loops are judged by headings alone, for graphs whose lengths are not to be trusted.
+    budget
+        Seconds for choosing as few to reject as can be, 60 if left out. After that some are chosen that need not be the
+        fewest; so it is where errors are far larger than declared, and closures clash at random.
 
     Notes
     -----
@@ -147,7 +156,9 @@ def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedCl
             cores.append((k, other))
             clashes[k].append(other)
             clashes[other].append(k)
-    kept = cheapest_choice([1.0] * chosen.size, [[k] for k in range(chosen.size)], cores)
+    scores, readings = [1.0] * chosen.size, [[k] for k in range(chosen.size)]
+    fewest = cheapest_choice(scores, readings, cores, seconds=BUDGET if budget is None else budget)
+    kept = quick_choice(scores, readings, cores) if fewest is None else fewest
     rejected = []
     for k in range(chosen.size):
         if k in kept:
@@ -156,7 +167,7 @@ def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedCl
         first, second = (int(graph.poses[end[edge]]) for end in (graph.first, graph.second))
         reason, other = _reason(graph, judged, k, [j for j in clashes[k] if j in kept])
         rejected.append(RejectedClosure(edge, first, second, 1.0, reason, other))
-    return JudgedClosures(graph, tuple(rejected), int(np.count_nonzero(~heard)))
+    return JudgedClosures(graph, tuple(rejected), int(np.count_nonzero(~heard)), exact=fewest is not None)
 
 
 def judge_of(graph: PoseGraph, *, headings_only: bool = False) -> Judge:

@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ninefold._wording import counted, quoted
-from ninefold.encodings.choice import cheapest_choice
+from ninefold.encodings.choice import cheapest_choice, quick_choice
 from ninefold.errors import BadInput
 
 from ..robot.units import unit_of
@@ -56,6 +56,9 @@ BUDGET = 60.0
 
 TRIES = 12
 """How often to try to make a set of claims that clash smaller before the cheapest to reject are chosen."""
+
+LEAST_SECONDS = 5.0
+"""What a choice of the cheapest claims may take even if the budget is spent; after that they are chosen without a search."""
 
 LISTED = 6
 """Claims that a reason lists."""
@@ -170,7 +173,8 @@ def claims(
         Whether the walk left no exit untravelled. Then much fewer maps are legal, and more wrong claims are found.
     budget
         Seconds, 60 if left out, after which no more maps are searched for; with 0, claims are judged by congruence and by
-        the map alone that they themselves make.
+        the map alone that they themselves make. Where the budget and 5 s more do not do to choose the cheapest, claims are
+        chosen that may cost more.
     tolerance
         Radians within which two headings may be of one exit, instead of the header's.
 
@@ -289,6 +293,7 @@ class _Judging:
             self._readings.append(list(range(first, len(self._assertions))))
         self._congruence = Congruence(tree, _facts(tree))
         self._cores: list[Core] = []
+        self._cheapest = True
 
     def judged(self) -> Claims:
         """Alternate between the cheapest choice and what speaks against it."""
@@ -308,13 +313,19 @@ class _Judging:
                     found = [Core(self._blamed(list(chosen.values())), None)]
             if not found:
                 told = one if not isinstance(one, bool) else None
-                return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None)
+                return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None and self._cheapest)
             self._cores += found
 
     def _choice(self) -> dict[int, int]:
         if not self._cores and all(self._readings):
             return {claim: means[0] for claim, means in enumerate(self._readings)}
-        return cheapest_choice([one.score for one in self._said], self._readings, [core.members for core in self._cores])
+        given = [one.score for one in self._said], self._readings, [core.members for core in self._cores]
+        if self._cheapest:
+            found = cheapest_choice(*given, seconds=max(self._until - monotonic(), LEAST_SECONDS))
+            if found is not None:
+                return found
+            self._cheapest = False
+        return quick_choice(*given)
 
     def _clashing(self, chosen: dict[int, int]) -> list[Core]:
         """Return sets of chosen assertions that clash, enough of them to convict those that clash with all the rest."""
