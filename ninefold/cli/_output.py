@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-__all__ = ["note", "notes", "one_line", "print_json", "progress"]
+__all__ = ["first_few", "note", "notes", "one_line", "print_json", "progress"]
 
 QUIET_SECONDS = 2.0
 """Work that takes longer than this shows that it goes on."""
@@ -33,6 +33,14 @@ def notes(messages: Iterable[str]) -> None:
     """Print lines on stderr."""
     for message in messages:
         note(message)
+
+
+def first_few(lines: Iterable[str], most: int = 12) -> list[str]:
+    """Return the lines, or the first of them and how many more there are where nobody would read them all."""
+    every = list(lines)
+    if len(every) <= most + 1:
+        return every
+    return [*every[:most], f"... and {len(every) - most} more; --json lists them all"]
 
 
 def one_line(message: str) -> str:

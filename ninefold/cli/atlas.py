@@ -9,7 +9,7 @@ import typer
 from ninefold._wording import counted
 
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
-from ._output import note, notes, print_json, progress
+from ._output import first_few, note, notes, print_json, progress
 from .estimating import doubts_as_json, in_radians, map_noisy_walk
 from .follow import follow_walk, read_whole_walk
 
@@ -398,5 +398,5 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     print(f"named sets   {kinds}: {shown}" if named else "named sets   none")
     if facts["statements"]:
         print(f"statements   {facts['statements']}")
-    for warning in facts["warnings"]:
+    for warning in first_few(facts["warnings"]):
         print(f"note         {warning}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ninefold._wording import counted
 
-from ._output import note, notes, print_json, progress
+from ._output import first_few, note, notes, print_json, progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -96,7 +96,7 @@ def map_noisy_walk(
     if as_json:
         print_json({"file": str(out), **_sizes(plane), **_facts(found), "warnings": list(warnings)})
         return 0
-    notes(warnings)
+    notes(first_few(warnings))
     sure = "certain" if guess is None else f"a guess, {_number(found)}"
     print(f"{out}: {repr(plane).removeprefix('PlaneMap(').removesuffix(')')}; {sure}{_scatter(found)}")
     return 0
@@ -110,8 +110,9 @@ def _not_kept(found: Estimate, source: str, *, as_json: bool) -> int:
         print(f"{source}: {found.doubts[0]}")
         return 1
     print(f"{source}: not certain, {_number(found)}{_scatter(found)}")
-    for doubt, told in zip(found.doubts, _told(found), strict=True):
-        print(f"{doubt}; {told}" if told else str(doubt))
+    lines = (f"{doubt}; {told}" if told else str(doubt) for doubt, told in zip(found.doubts, _told(found), strict=True))
+    for line in first_few(lines):
+        print(line)
     notes(found.warnings)
     if next(found.maps(), None) is None:
         note("no atlas was written; so much is open that no map is listed, and none is the likeliest")

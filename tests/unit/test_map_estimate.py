@@ -442,3 +442,10 @@ def test_a_district_walked_with_five_degrees_is_in_few_named_doubts(tmp_path, ca
     with Atlas.open(tmp_path / "a.atlas") as atlas:
         assert atlas.guess is not None
         assert len(atlas.guess.doubts) == len(found["doubts"])
+
+
+def test_a_hundred_doubts_are_not_all_printed():
+    from ninefold.cli._output import first_few
+
+    assert first_few(["a", "b"], most=1) == ["a", "b"]
+    assert first_few(map(str, range(5)), most=2) == ["0", "1", "... and 3 more; --json lists them all"]

@@ -21,6 +21,7 @@ from ..heading import TAU
 from ..plane import PlaneMap
 from ..robot.walk import Walk
 from .likeness import Likeness, likeness
+from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
 from .stretches import smallest_stretch
 from .walk_tree import Contradiction, WalkTree, fold
@@ -32,14 +33,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["Hypotheses", "Hypothesis", "hypotheses"]
-
-ROOTS = 8
-"""Nodes that a search for closed maps begins with in turn."""
-
-FIRST_DECISIONS = 2000
-"""Decisions of the first round; every round has `GROWTH` times as many."""
-
-GROWTH = 4
 
 KEPT = 10_000
 """Maps kept of those that are counted, if nothing else is asked for."""
@@ -233,32 +226,11 @@ def _closed_maps(
     until: float,
     report: Callable[[int], object],
 ) -> tuple[int, bool]:
-    """Find the closed maps, from several roots in turn with growing numbers of decisions; return (count, whether all)."""
-    spread = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist()
-    roots = [spread[0], spread[-1], *spread[1:-1]] if len(spread) > 2 else spread
-    fails: NDArray[np.int64] | None = None
-    decisions = FIRST_DECISIONS
-    best: list[Hypothesis] = []
-    while True:
-        for root in roots:
-            search = QuotientSearch(tree, alike, root=root, closed=True, most_places=max_places, fails=fails)
-            here: list[Hypothesis] = []
-            while not search.done and search.decisions < decisions:
-                for places in search.more(min(decisions - search.decisions, 512)):
-                    if len(here) < most:
-                        here.append(_hypothesis(tree, places))
-                report(max(len(best), search.found))
-                if monotonic() > until:
-                    break
-            fails = search.fails
-            best = max(best, here, key=len)
-            if search.done:
-                found += here
-                return search.found, True
-            if monotonic() > until:
-                found += best
-                return len(best), False
-        decisions *= GROWTH
+    """Find the closed maps; return (count, whether all)."""
+    outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places)
+    found += [_hypothesis(tree, places) for places in outcome.maps]
+    report(outcome.count)
+    return outcome.count, outcome.exact
 
 
 def _open_maps(

@@ -15,8 +15,8 @@ from ..heading import TAU, wrap
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .consequences import Merged
     from .likeness import Likeness
-    from .merging import Merged
     from .walk_tree import WalkTree
 
 __all__ = ["TurningFace", "impossible_face", "impossible_loop", "tree_path"]

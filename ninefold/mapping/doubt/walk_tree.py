@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -209,7 +210,7 @@ def _step(
         node_of.append(there)
         shift_of.append(0)
         return None
-    there, back, _ = way
+    there, back, turn = way
     before, now = tree.first + tree.seen[there], tree.first + visit
     count = len(tree.exits[there])
     if len(exits) != count:
@@ -226,6 +227,13 @@ def _step(
             now,
             f"visit {now + 1} must be the place of visit {before + 1}, whose exits lie at "
             f"{tree.unit.headings(tree.exits[there])} and not at {tree.unit.headings(exits)}",
+        )
+    if not abs(leg.turn - turn) < (pi if tree.compass else 2 * tree.tolerance + 1e-9):
+        return Contradiction(
+            tree.first + tree.seen[max(here, there)] - 1,
+            now,
+            f"visit {now + 1} must be the place of visit {before + 1}, and the way there turns by {tree.unit.angle(turn)} "
+            f"and not by {tree.unit.angle(leg.turn)}",
         )
     if name is not None:
         if tree.names[there] not in (None, name):
@@ -279,7 +287,8 @@ def _alike(exits: list[float], others: list[float], shift: int, tolerance: float
     misses = [wrap(others[(i + shift) % count] - yaw) for i, yaw in enumerate(exits)]
     if compass:
         return all(abs(miss) <= tolerance for miss in misses)
-    return all(abs(wrap(miss - misses[0])) <= tolerance for miss in misses)
+    apart = [wrap(miss - misses[0]) for miss in misses]  # some common turn takes all of them within the tolerance
+    return max(apart) - min(apart) <= 2 * tolerance
 
 
 def _tree(

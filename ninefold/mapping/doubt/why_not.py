@@ -15,8 +15,8 @@ import numpy as np
 from ninefold._wording import counted, quoted
 from ninefold.errors import BadInput
 
+from .consequences import Clash, merged
 from .existence import held_same, some_map
-from .merging import Clash, merged
 from .turning_faces import impossible_face, impossible_loop, tree_path
 
 if TYPE_CHECKING:
