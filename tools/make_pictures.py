@@ -16,8 +16,20 @@ from math import radians
 from pathlib import Path
 
 from ninefold.io import samples
-from ninefold.layout import Drawing, TrueShapes, compass, side_by_side
-from ninefold.mapping import Follower, PlaneMap, Set, WalkHeader, build, estimate
+from ninefold.layout import Drawing, TrueShapes, compass, draw_alternatives, side_by_side
+from ninefold.mapping import (
+    Follower,
+    Heading,
+    PlaneMap,
+    Samples,
+    Set,
+    Visit,
+    Walk,
+    WalkHeader,
+    build,
+    estimate,
+    hypotheses,
+)
 from ninefold.mapping.robot.simulated import explore
 
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
@@ -98,7 +110,23 @@ def lost() -> str:
     return side_by_side(*sheets)
 
 
-PICTURES = {"district-beside.svg": district, "guess.svg": guess, "lost.svg": lost, "office.svg": office}
+def alike() -> str:
+    """All maps of a walk round two halls whose corners and junctions nobody recognises."""
+    exits = ((0, 90), (0, 90, 270), (90, 180, 270), (90, 180), (0, 90), (0, 90, 270), (0, 270), (180, 270), (90, 180, 270))
+    events: list[Samples | Visit] = []
+    for bearings, went in zip(exits, (None, 90, 0, 270, 180, 90, 90, 0, 270), strict=True):
+        events += [] if went is None else [Samples.of(Heading.from_bearing(went))]
+        events.append(Visit(None, tuple(map(Heading.from_bearing, bearings))))
+    return draw_alternatives(hypotheses(Walk(WalkHeader(), tuple(events))))
+
+
+PICTURES = {
+    "alike.svg": alike,
+    "district-beside.svg": district,
+    "guess.svg": guess,
+    "lost.svg": lost,
+    "office.svg": office,
+}
 
 
 def main(folder: Path) -> None:

@@ -41,7 +41,7 @@ def draw_alternatives(
     width
         Pixels of one map.
     columns
-        Maps in a row, 3 at most if left out.
+        Maps in a row; left out, 3 at most, and 2 where there are 4 maps.
 
     Raises
     ------
@@ -72,4 +72,5 @@ def draw_alternatives(
         differs = "" if number == 1 else f", {counted(marked, 'place')} {'differs' if marked == 1 else 'differ'}"
         title = f"{number}: {state}{differs}"
         pictures.append(draw(wide.plane).to_svg(title=title, theme=theme, width=width, differences=found))
-    return side_by_side(*pictures, columns=columns or COLUMNS)
+    in_a_row = (2 if len(pictures) == 4 else COLUMNS) if columns is None else columns
+    return side_by_side(*pictures, columns=in_a_row)

@@ -2,13 +2,17 @@
 
 import random
 from dataclasses import replace
+from math import radians
 
 import pytest
 
-from ninefold.errors import BadInput
+from ninefold.errors import BadInput, WalkError
 from ninefold.mapping import Heading, Samples, Visit, Walk, hypotheses
+from ninefold.mapping.doubt.likeness import likeness
 from ninefold.mapping.doubt.stretches import smallest_stretch, stretch_of
+from ninefold.mapping.doubt.walk_tree import fold
 from ninefold.mapping.doubt.why_not import Reasons
+from tests import alike
 from tests.lattice import Lattice, straight
 
 
@@ -127,6 +131,30 @@ def test_every_reason_is_right_and_every_pair_has_one(compass):
     assert kinds >= {None, "exits", "consequence", "loop"}
 
 
+@pytest.mark.parametrize("compass", [True, False])
+def test_no_reason_speaks_against_the_truth_where_headings_err(compass):
+    kinds = set()
+    for seed in range(24):
+        rng = random.Random(seed)
+        world = alike.piece(seed, rng.choice((4, 6, 10)), dead_ends=rng.random() < 0.7)
+        tour = (alike.covering_walk if seed % 2 else alike.depth_first_walk)(world, seed)
+        tolerance = radians(rng.choice((1, 10, 20, 40)))
+        noise = tolerance * (0.49 if compass else 0.3)
+        walk = alike.observed(world, tour, compass=compass, tolerance=tolerance, noise=noise, seed=seed)
+        try:
+            tree = fold(walk)
+        except WalkError:  # exits so close together that the log does not tell which was taken
+            continue
+        reasons = Reasons(tree, likeness(tree))
+        places = tour.places(world)
+        for i in range(tree.n_visits):
+            for j in range(i):
+                reason = reasons.plain(j, i)
+                assert reason is None or places[i] != places[j], (seed, str(reason))
+                kinds.add(reason and reason.kind)
+    assert kinds >= {None, "exits", "consequence"}
+
+
 # -- the smallest stretch --------------------------------------------------------------------------------------------------
 
 
@@ -183,7 +211,7 @@ def test_a_walk_that_has_an_open_map_has_no_such_stretch():
 
 def test_random_names_leave_stretches_that_cannot_be_shortened():
     refuted = 0
-    for seed in range(60):
+    for seed in range(30):
         rng = random.Random(seed)
         walk, _ = Lattice.whole(3, 3).walk(seed, 8)
         visits = [k for k, event in enumerate(walk.events) if not isinstance(event, Samples)]
@@ -198,4 +226,4 @@ def test_random_names_leave_stretches_that_cannot_be_shortened():
             refuted += 1
         else:
             assert found.contradiction is None
-    assert refuted > 10
+    assert refuted > 5

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
 
 if TYPE_CHECKING:
@@ -16,10 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["held_same", "some_map"]
 
-ROUND = 2000
-"""Decisions from one root before another is tried; every round has `GROWTH` times as many."""
-
-GROWTH = 4
+FIRST_DECISIONS = 2000
+"""Decisions for a first closed map from one root before all of them are looked for."""
 
 ROOTS = 8
 
@@ -39,20 +39,17 @@ def some_map(
     if tree.contradiction is not None:
         return False
     roots = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist() if closed else [0]
-    decisions = ROUND
-    fails = None
-    while True:
-        for root in roots:
-            search = QuotientSearch(tree, alike, root=root, closed=closed, most_places=max_places, fails=fails)
-            while not search.done and (search.decisions < decisions or len(roots) == 1):
-                if len(search.more(512, 1)):
-                    return True
-                if until is not None and monotonic() > until:
-                    return False if search.done else None
-            if search.done:
-                return False
-            fails = search.fails
-        decisions *= GROWTH
+    for root in roots:
+        search = QuotientSearch(tree, alike, root=root, closed=closed, most_places=max_places)
+        while not search.done and (not closed or search.decisions < FIRST_DECISIONS):
+            if len(search.more(512, 1)):
+                return True
+            if until is not None and monotonic() > until and not search.done:
+                return None
+        if search.done:
+            return False
+    found = closed_maps(tree, alike, until=inf if until is None else until, most=1, most_places=max_places)
+    return True if found.count else False if found.exact else None
 
 
 def held_same(alike: Likeness, n: int, m: int) -> Likeness:
