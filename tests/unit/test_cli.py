@@ -287,7 +287,7 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     for options, word in (
         (("--noise", "5"), "60 degrees"),
         (("--drift", "4"), "180 degrees"),
-        (("--tour", "wild"), "'covering', not 'wild'"),
+        (("--tour", "wild"), "'covering' or 'wall', not 'wild'"),
     ):
         assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", *options), word)
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--step", "0"), "step")

@@ -145,6 +145,31 @@ def place_made(q, n):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def count_way(q, n, x, change):  # type: ignore[no-untyped-def]
+    """Count the way that a placed node walked through an exit, if it is decided, among those left (+1) or no more (-1)."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    e = n * width + x
+    m = q.way[e, OTHER]
+    if m < 0 or q.node[m, PLACE] < 0:
+        return
+    if q.exit[q.node[n, PLACE] * width + (x + q.node[n, SHIFT]) % q.node[n, DEGREE], MATE] < 0:
+        return
+    q.kind[q.way[e, KIND], ENDS] += change
+    q.kind[q.way[m * width + q.way[e, BACK], KIND], ENDS] += change
+    q.number[TURN_LEFT] += change * q.way[e, LENGTH]
+
+
+@kernel
+def count_between(q, stub, change):  # type: ignore[no-untyped-def]
+    """Count the ways between nodes that were placed before the stub they lead through is decided; there are none in a tree."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    n = q.place[stub // width, FIRST]
+    while n >= 0:
+        count_way(q, n, (stub % width - q.node[n, SHIFT]) % q.node[n, DEGREE], change)
+        n = q.node[n, NEXT]
+
+
+@kernel
 def put(q, n, w, shift):  # type: ignore[no-untyped-def]
     """Put a node, and all nodes that follow, into places; return whether that can be. What is done is on the trail."""
     width = q.exit.shape[0] // q.place.shape[0]
@@ -184,15 +209,14 @@ def put(q, n, w, shift):  # type: ignore[no-untyped-def]
         q.trail[q.number[N_TRAIL]] = n
         q.number[N_TRAIL] += 1
         for x in range(degree):
+            if q.way[n * width + x, OTHER] != n or q.way[n * width + x, BACK] > x:
+                count_way(q, n, x, -1)
+        for x in range(degree):
             e = n * width + x
             m = q.way[e, OTHER]
             if m < 0:
                 continue
             back = q.way[e, BACK]
-            if q.node[m, PLACE] >= 0:
-                q.kind[q.way[e, KIND], ENDS] -= 1
-                q.kind[q.way[m * width + back, KIND], ENDS] -= 1
-                q.number[TURN_LEFT] -= q.way[e, LENGTH]
             mate = q.exit[w * width + (x + shift) % degree, MATE]
             if mate >= 0:
                 other = mate // width
@@ -213,12 +237,8 @@ def taken_back(q, mark):  # type: ignore[no-untyped-def]
         q.number[N_TRAIL] -= 1
         n = q.trail[q.number[N_TRAIL]]
         for x in range(q.node[n, DEGREE]):
-            e = n * width + x
-            m = q.way[e, OTHER]
-            if m >= 0 and q.node[m, PLACE] >= 0:
-                q.kind[q.way[e, KIND], ENDS] += 1
-                q.kind[q.way[m * width + q.way[e, BACK], KIND], ENDS] += 1
-                q.number[TURN_LEFT] += q.way[e, LENGTH]
+            if q.way[n * width + x, OTHER] != n or q.way[n * width + x, BACK] > x:
+                count_way(q, n, x, 1)
         if q.node[n, GROUP] >= 0:
             q.group[q.node[n, GROUP], PLACED] -= 1
         q.place[q.node[n, PLACE], FIRST] = q.node[n, NEXT]
@@ -408,7 +428,10 @@ def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
     degree = q.node[m, DEGREE]
     judged = q.number[STRICT] == 1 and q.number[RELATIVE] == 0
     found = 0
-    if may_be_new:
+    end = -1
+    if q.node[m, PLACE] >= 0:  # no tree, where claims made nodes one: what lies beyond may be placed already
+        end = q.node[m, PLACE] * width + (back + q.node[m, SHIFT]) % degree
+    elif may_be_new:
         q.option[0] = -1
         found = 1
     for step in range(1, met):
@@ -419,7 +442,7 @@ def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
         else:
             j -= met
         other = q.stub[j]
-        if q.exit[other, KIND_OF_EXIT] != kind:
+        if q.exit[other, KIND_OF_EXIT] != kind or (end >= 0 and other != end):
             continue
         w = other // width
         first = q.place[w, FIRST]
@@ -592,6 +615,7 @@ def decided(q, stub, end):  # type: ignore[no-untyped-def]
     q.bearing[end, TURN] = -settled
     q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] -= 1
     q.kind[q.exit[end, KIND_OF_EXIT], STUBS] -= 1
+    count_between(q, stub, -1)
     if new and not put(q, m, end // width, 0):
         return end, False
     if not folded(q, stub, end):
@@ -614,6 +638,7 @@ def undone(q, stub, end, trail, places):  # type: ignore[no-untyped-def]
     """Take a decision back: the trail and the places are as they were."""
     width = q.exit.shape[0] // q.place.shape[0]
     taken_back(q, trail)
+    count_between(q, stub, 1)
     q.exit[stub, MATE] = -1
     q.exit[end, MATE] = -1
     q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] += 1

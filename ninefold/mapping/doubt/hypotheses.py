@@ -21,23 +21,18 @@ from ..heading import TAU
 from ..plane import PlaneMap
 from ..robot.walk import Walk
 from .likeness import Likeness, likeness
+from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
+from .stretches import smallest_stretch
 from .walk_tree import Contradiction, WalkTree, fold
+from .why_not import WhyNot, why_not
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
 __all__ = ["Hypotheses", "Hypothesis", "hypotheses"]
-
-ROOTS = 8
-"""Nodes that a search for closed maps begins with in turn."""
-
-FIRST_DECISIONS = 2000
-"""Decisions of the first round; every round has `GROWTH` times as many."""
-
-GROWTH = 4
 
 KEPT = 10_000
 """Maps kept of those that are counted, if nothing else is asked for."""
@@ -98,9 +93,11 @@ class Hypotheses:
     exact
         Whether the search came to its end, so that `count` is their number.
     contradiction
-        Why no map explains the walk, if that shows in a stretch of it.
+        Why no map explains the walk, if that shows in a stretch of it: the smallest such.
     seconds
         What the search took.
+    closed, max_places
+        Which maps were asked for.
     """
 
     tree: WalkTree = field(repr=False)
@@ -110,6 +107,8 @@ class Hypotheses:
     exact: bool
     contradiction: Contradiction | None
     seconds: float
+    closed: bool | None = None
+    max_places: int | None = None
 
     def __len__(self) -> int:
         return len(self.maps)
@@ -122,6 +121,21 @@ class Hypotheses:
         """Bits that the walk leaves open: the logarithm to base 2 of the number of maps; None where it is not known."""
         return log2(self.count) if self.exact and self.count else None
 
+    def why_not(self, i: int, j: int, *, budget: float = 10.0) -> WhyNot | None:
+        """Return why two visits, counted from 0, are the same place in none of the maps; None if they are in one.
+
+        Parameters
+        ----------
+        budget
+            Seconds for a search, where neither a plain reason nor the maps listed tell.
+
+        Raises
+        ------
+        BadInput
+            For visits that the walk does not have.
+        """
+        return why_not(self, i, j, budget=budget)
+
 
 def hypotheses(
     walk: Walk,
@@ -133,6 +147,7 @@ def hypotheses(
     tolerance: float | None = None,
     same: Iterable[tuple[int, int]] = (),
     differ: Iterable[tuple[int, int]] = (),
+    report: Callable[[int], object] | None = None,
 ) -> Hypotheses:
     """Find every plane map that explains a walk.
 
@@ -153,6 +168,8 @@ def hypotheses(
         Radians within which two headings may be of one exit, instead of the header's.
     same, differ
         Pairs of visits, counted from 0, that are known to be one place, or two.
+    report
+        Called with the number of maps found so far, now and then.
 
     Raises
     ------
@@ -162,21 +179,32 @@ def hypotheses(
     if not isinstance(walk, Walk):
         raise BadInput(f"hypotheses explain a Walk, such as read_walk gives, not {quoted(walk)}")
     begun = monotonic()
+    until = begun + (BUDGET if budget is None else budget)
     tree = fold(walk, tolerance=tolerance)
     if tree.contradiction is not None:
-        return Hypotheses(tree, likeness(tree), (), 0, exact=True, contradiction=tree.contradiction, seconds=0.0)
+        shown = smallest_stretch(walk, tolerance=tolerance, until=until) or tree.contradiction
+        return Hypotheses(tree, likeness(tree), (), 0, True, shown, monotonic() - begun, closed, max_places)
+    same, differ, told = tuple(same), tuple(differ), report or (lambda _: None)
     alike = likeness(tree, same=_nodes(tree, same), differ=_nodes(tree, differ))
-    until = begun + (BUDGET if budget is None else budget)
     most = KEPT if limit is None else limit
     found: list[Hypothesis] = []
     count, exact = 0, True
     if closed is not False:
-        count, exact = _closed_maps(tree, alike, found, most, max_places, until)
+        count, exact = _closed_maps(tree, alike, found, most, max_places, until, told)
     if closed is not True:
-        number, whole = _open_maps(tree, alike, found, most, max_places, until, closed=count if closed is None else 0)
+        shut = count if closed is None else 0
+        number, whole = _open_maps(tree, alike, found, most, max_places, until, told, closed=shut)
         count, exact = count + number, exact and whole
-    found.sort(key=lambda one: (not one.closed, one.n_places, one.place.tolist()))
-    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, None, monotonic() - begun)
+    found.sort(key=_rank)
+    wrong: Contradiction | None = None
+    if exact and not count:
+        wrong = smallest_stretch(walk, tolerance=tolerance, max_places=max_places, same=same, differ=differ, until=until)
+    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, wrong, monotonic() - begun, closed, max_places)
+
+
+def _rank(one: Hypothesis) -> tuple[bool, int, list[int]]:
+    """Return what maps are ranked by: closed before open, fewest places first."""
+    return not one.closed, one.n_places, one.place.tolist()
 
 
 def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -190,33 +218,19 @@ def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int,
 
 
 def _closed_maps(
-    tree: WalkTree, alike: Likeness, found: list[Hypothesis], most: int, max_places: int | None, until: float
+    tree: WalkTree,
+    alike: Likeness,
+    found: list[Hypothesis],
+    most: int,
+    max_places: int | None,
+    until: float,
+    report: Callable[[int], object],
 ) -> tuple[int, bool]:
-    """Find the closed maps, from several roots in turn with growing numbers of decisions; return (count, whether all)."""
-    spread = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist()
-    roots = [spread[0], spread[-1], *spread[1:-1]] if len(spread) > 2 else spread
-    fails: NDArray[np.int64] | None = None
-    decisions = FIRST_DECISIONS
-    best: list[Hypothesis] = []
-    while True:
-        for root in roots:
-            search = QuotientSearch(tree, alike, root=root, closed=True, most_places=max_places, fails=fails)
-            here: list[Hypothesis] = []
-            while not search.done and search.decisions < decisions:
-                for places in search.more(min(decisions - search.decisions, 512)):
-                    if len(here) < most:
-                        here.append(_hypothesis(tree, places))
-                if monotonic() > until:
-                    break
-            fails = search.fails
-            best = max(best, here, key=len)
-            if search.done:
-                found += here
-                return search.found, True
-            if monotonic() > until:
-                found += best
-                return len(best), False
-        decisions *= GROWTH
+    """Find the closed maps; return (count, whether all)."""
+    outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places)
+    found += [_hypothesis(tree, places) for places in outcome.maps]
+    report(outcome.count)
+    return outcome.count, outcome.exact
 
 
 def _open_maps(
@@ -226,6 +240,7 @@ def _open_maps(
     most: int,
     max_places: int | None,
     until: float,
+    report: Callable[[int], object],
     *,
     closed: int,
 ) -> tuple[int, bool]:
@@ -237,8 +252,11 @@ def _open_maps(
             one = _hypothesis(tree, places)
             if not one.closed:
                 number += 1
-                if len(found) < most + closed:
-                    found.append(one)
+                found.append(one)
+                if len(found) > 2 * most + closed + 1000:
+                    found.sort(key=_rank)
+                    del found[max(most, closed) :]
+        report(closed + number)
         if monotonic() > until:
             return number, False
     return number, True

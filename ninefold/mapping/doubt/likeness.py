@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from .walk_tree import WalkTree
 
-__all__ = ["Likeness", "likeness"]
+__all__ = ["Likeness", "can_be_one", "likeness"]
 
 EPSILON = 1e-9
 """Radians that rounding may add."""
@@ -84,6 +84,35 @@ def likeness(tree: WalkTree, *, same: Iterable[tuple[int, int]] = (), differ: It
     signature = np.array([number.setdefault(key, len(number)) for key in keys], np.int64)
     pairs = [*same, *((group[0], n) for group in groups for n in group[1:])]
     return Likeness(shifts, kind, n_kinds, signature, _groups(tree.n_nodes, pairs))
+
+
+def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether pairs of nodes can be one place under given shifts, (P,); as the table of `likeness` without making it.
+
+    Parameters
+    ----------
+    n, m, shift
+        (P,) int64: exit x of node n would be exit x + shift of node m. Without a compass either node may be the one that the
+        other's headings are turned to.
+
+    Notes
+    -----
+    Complexity O(P times K), array code.
+    """
+    degree = tree.degree[n]
+    exits = np.arange(tree.heading.shape[1])
+    there = (exits + shift[:, None]) % np.maximum(degree, 1)[:, None]
+    miss = tree.heading[m[:, None], there] - tree.heading[n]
+    real = exits < degree[:, None]
+    frames = [miss]
+    if not tree.compass:
+        first = (-shift) % np.maximum(degree, 1)
+        frames = [miss - miss[:, :1], miss - miss[np.arange(n.size), first][:, None]]
+    found = np.zeros(n.size, np.bool_)
+    for off in frames:
+        off = off - TAU * np.round(off / TAU)
+        found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
+    return found & (tree.degree[m] == degree)
 
 
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:

@@ -13,7 +13,7 @@ from ninefold._wording import counted, quoted
 
 from .doubts import Doubt, doubts_of
 from .exit_lists import averaged, biases
-from .noise import CHANCE, threshold
+from .noise import CHANCE, SURE, threshold
 from .orders import star_orders
 from .reading import settled_reading
 from .ways import bundles, partings, way_of
@@ -33,9 +33,6 @@ __all__ = ["Outcome", "outcome_of"]
 
 MOST_READINGS = 64
 """Readings of a walk, legs shared out among ways, up to which all are settled."""
-
-SURE = 6.5
-"""Standard deviations that noise does not reach: a rotation between two samples that much short of half a turn is sure."""
 
 
 ODD = 1e-4
@@ -142,7 +139,7 @@ class _Gathering:
                 names = tuple(self.evidence.places[end] for end in ends)
                 between = " and ".join(map(quoted, names))
                 return self._none_left(f"the headings of the legs between {between} scatter too widely for one way", names)
-            if len(readings) == 1 and len(readings[0]) == 1:
+            if len(readings) == 1 and len(readings[0]) == 1 and not (uncounted and uncounted[-1] is bundle):
                 self.misses += 2 * bundle.scatter(total)
                 self.free += 2 * (len(bundle.legs) - 1)
             if len(readings) > 1:
@@ -153,7 +150,9 @@ class _Gathering:
         for parts in product(*options) if number <= MOST_READINGS else [tuple(each[0] for each in options)]:
             settled.append(self._settled([bundle for group in parts for bundle in group]))
             self.effort -= settled[-1].judged
-        return self._estimated(settled, open_bundles, uncounted, counted_all=number <= MOST_READINGS)
+            if settled[-1].crowded:  # not counted in any case, and the others would take as long
+                break
+        return self._estimated(settled, open_bundles, uncounted, counted_all=len(settled) == number)
 
     def _name(self, place: int) -> str:
         return quoted(self.evidence.places[place])
@@ -168,16 +167,13 @@ class _Gathering:
 
     def _spare(self, bundle: Bundle, room: NDArray[np.float64]) -> int:
         """Return how many more ways than one a bundle may hold."""
-        if bundle.tail == bundle.head:
-            spare = room[bundle.tail] // 2
-        else:
-            spare = min(room[bundle.tail], room[bundle.head])
+        spare = min(room[bundle.tail], room[bundle.head])
         if np.isinf(spare):  # nothing is listed: one way, unless the legs scatter oddly or are named otherwise
             names = {name for leg in bundle.legs.tolist() if (name := self.evidence.edges[leg]) is not None}
             free = 2 * (len(bundle.legs) - 1)
             odd = free and bundle.scatter(self.variance + self.floor) > threshold(free, ODD)
             return max(len(names) - 1, 1 if odd else 0)
-        return int(spare)
+        return int(spare) // 2 if bundle.tail == bundle.head else int(spare)
 
     def _fit_exits(self, parts: tuple[Bundle, ...]) -> bool:
         """Whether the ways of a reading can be matched with listed exits at either end, whatever the other ways are."""
@@ -221,8 +217,10 @@ class _Gathering:
             if not counted_all or uncounted:
                 return self._uncounted(settled, open_bundles, uncounted)
             return self._none_left(*_failure(settled[0]))
-        misses = self.misses + min(one.misses for one in left)
-        free = self.free + min(left, key=lambda one: one.misses).free
+        misses, free = self.misses, self.free
+        if counted_all and not uncounted:  # else no reading that is settled need be the true one
+            nearest = min(left, key=lambda one: one.misses)
+            misses, free = misses + nearest.misses, free + nearest.free
         scatter = self.noise.sigma * sqrt(misses / free) if free else None
         if free and float(gammaincc(free / 2, misses / 2)) < CHANCE:
             return self._none_left("the readings scatter more than that", (), scatter)

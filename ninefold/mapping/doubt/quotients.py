@@ -70,8 +70,9 @@ class QuotientSearch:
         count = tree.n_nodes
         self._control = np.zeros(6, np.int64)
         self._control[kernels.GOING_DOWN] = 1
-        self._frame = np.zeros((count + 2, 5), np.int64)
-        self._choice = np.empty((count + 2) * (int(tree.degree.sum()) + 2), np.int64)  # pages not used take no memory
+        depth = max(count, int((tree.other >= 0).sum()) // 2) + 2  # more ways than nodes, where claims made nodes one
+        self._frame = np.zeros((depth, 5), np.int64)
+        self._choice = np.empty(depth * (int(tree.degree.sum()) + 2), np.int64)  # pages not used take no memory
         self._best = np.zeros(self._state.option.size, np.int64)
         place = kernels.place_made(self._state, root)
         possible = kernels.put(self._state, root, place, 0) and alike.shifts.diagonal().all()  # a node differs from itself
@@ -160,7 +161,7 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
         limit,
         np.zeros(count, np.int64),
         np.zeros((int(alike.group.max(initial=-1)) + 1, 2), np.int64),
-        np.zeros((8 * count + 16, 3), np.int64),
+        np.zeros((max(8 * count, int(walked.sum())) + 16, 3), np.int64),
         np.zeros(places * width + 2, np.int64),
         np.zeros(places * width + 2),
         np.zeros(places * width + 2, np.int64),
