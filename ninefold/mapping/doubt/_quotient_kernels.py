@@ -30,8 +30,8 @@ OTHER, BACK, KIND, LENGTH, BEYOND = 0, 1, 2, 3, 4
 HEADING, TURN = 0, 1
 # columns of `place`: DEGREE, FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST
 FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST = 1, 2, 3, 4
-# columns of `exit`: MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY
-MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY = 0, 1, 2, 3, 4
+# columns of `exit`
+MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY, CLOCKWISE = 0, 1, 2, 3, 4, 5
 # columns of `group`
 PLACED, PLACE_OF_GROUP = 0, 1
 # columns of `balance`
@@ -70,7 +70,7 @@ class Quotient(NamedTuple):
     place: NDArray[np.int64]
     """(P, 5): degree, first node of the list, signature, node whose exits it has, and its earliest node."""
     exit: NDArray[np.int64]
-    """(P K, 5): mate or -1, kind, a mark, how many ways may enter here, and the last of them."""
+    """(P K, 6): mate or -1, kind, a mark, how many ways may enter here and the last of them, the next exit clockwise."""
     bearing: NDArray[np.float64]
     """(P K, 2): heading, net turn of the edge."""
     kind: NDArray[np.int64]
@@ -114,19 +114,14 @@ def wrapped(angle):  # type: ignore[no-untyped-def]
 @kernel
 def clockwise(q, x):  # type: ignore[no-untyped-def]
     """Return the exit of the same place that is next clockwise."""
-    width = q.exit.shape[0] // q.place.shape[0]
-    if x % width:
-        return x - 1
-    return x + q.place[x // width, DEGREE] - 1
+    return q.exit[x, CLOCKWISE]
 
 
 @kernel
 def corner(q, after, before):  # type: ignore[no-untyped-def]
     """Return the angle counter-clockwise from exit `before` to exit `after` of one place, in (0, 2 pi]."""
-    angle = (q.bearing[after, HEADING] - q.bearing[before, HEADING]) % (2 * np.pi)
-    if angle < 1e-9 or after == before:
-        return 2 * np.pi
-    return angle
+    angle = q.bearing[after, HEADING] - q.bearing[before, HEADING]  # the headings of a place lie within one turn
+    return angle if angle > 0.0 else angle + 2 * np.pi
 
 
 @kernel
@@ -142,6 +137,7 @@ def place_made(q, n):  # type: ignore[no-untyped-def]
     for x in range(q.node[n, DEGREE]):
         e = w * width + x
         q.exit[e, MATE] = -1
+        q.exit[e, CLOCKWISE] = e - 1 if x else e + q.node[n, DEGREE] - 1
         q.exit[e, KIND_OF_EXIT] = q.way[n * width + x, KIND]
         q.bearing[e, HEADING] = q.angle[n * width + x, HEADING]
         q.kind[q.exit[e, KIND_OF_EXIT], STUBS] += 1
@@ -284,28 +280,32 @@ def walked_from(q, stub):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def contour(q, stub):  # type: ignore[no-untyped-def]
-    """Walk the face around a stub clockwise; return the number of other stubs met, in order, in `stub` and `turned`.
+def contour(q, begin):  # type: ignore[no-untyped-def]
+    """Walk the face around a stub clockwise; return the number of its stubs, which are in `stub` in order, this one first.
 
-    The turn to each counts the corners at either end; the turn after the last is that all the way round, the stub's own two
-    corners counted apart.
+    In `turned` is how far the way has turned at each of them since the first, half a turn less; and, after the last, all
+    the way round.
     """
-    met = 0
+    met = 1
     total = 0.0
-    before = stub
-    x = stub
+    q.stub[0] = begin
+    q.turned[0] = 0.0
+    q.exit[begin, SEEN] = 1
+    before = begin
+    x = begin
     while True:
         x = clockwise(q, x)
-        angle = np.pi - corner(q, before, x)
-        if x == stub:
-            q.turned[met] = total + angle
+        angle = corner(q, before, x)
+        if x == begin:
+            q.turned[met] = total - angle
             break
         if q.exit[x, MATE] < 0:
+            q.exit[x, SEEN] = 1
             q.stub[met] = x
-            q.turned[met] = total + angle
+            q.turned[met] = total - angle
             met += 1
         else:
-            total += angle + q.bearing[x, TURN]
+            total += np.pi - angle + q.bearing[x, TURN]
             before = q.exit[x, MATE]
             x = before
     return met
@@ -417,15 +417,16 @@ def first_turn(q, dart):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
-    """Return how many ends the way through a stub can have; they are in `option`, -1 for a new place."""
+def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
+    """Return how many ends the way through a stub of a contour can have; they are in `option`, -1 for a new place."""
     width = q.exit.shape[0] // q.place.shape[0]
+    stub = q.stub[at]
     m = q.way[walked, OTHER]
     back = q.way[walked, BACK]
+    kind = q.way[m * width + back, KIND]
     turn = q.angle[walked, TURN]
     degree = q.node[m, DEGREE]
-    met = contour(q, stub)
-    whole = q.turned[met] - np.pi
+    judged = q.number[STRICT] == 1 and q.number[RELATIVE] == 0
     found = 0
     end = -1
     if q.node[m, PLACE] >= 0:  # no tree, where claims made nodes one: what lies beyond may be placed already
@@ -433,23 +434,27 @@ def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
     elif may_be_new:
         q.option[0] = -1
         found = 1
-    for j in range(met):
+    for step in range(1, met):
+        j = at + step
+        turned = q.turned[met] + np.pi - q.turned[at]
+        if j < met:
+            turned = np.pi - q.turned[at]
+        else:
+            j -= met
         other = q.stub[j]
-        if end >= 0 and other != end:
+        if q.exit[other, KIND_OF_EXIT] != kind or (end >= 0 and other != end):
             continue
         w = other // width
-        if q.place[w, DEGREE] != degree:
-            continue
         first = q.place[w, FIRST]
-        if not (q.alike[m, first] >> ((other % width - back - q.node[first, SHIFT]) % degree)) & 1:
+        if not (q.alike[m, first] >> ((other - w * width - back - q.node[first, SHIFT]) % degree)) & 1:
             continue
-        if q.number[STRICT] == 1 and not q.number[RELATIVE]:
+        if judged:
             miss = wrapped(q.bearing[other, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
-            turns = (q.turned[j] - turn - miss) / (2 * np.pi)
+            turns = (turned + q.turned[j] - turn - miss) / (2 * np.pi)
             nearest = int(np.rint(turns))
             if abs(turns - nearest) > 0.02:
                 continue
-            if nearest != 1 and (nearest != -1 or whole > 0):
+            if nearest != 1 and (nearest != -1 or q.turned[met] > 0):
                 continue
         q.option[found] = other
         found += 1
@@ -663,28 +668,34 @@ def branch(q, best):  # type: ignore[no-untyped-def]
     may_be_new = q.number[N_PLACES] < q.limit[MOST_PLACES]
     for w in range(q.number[N_PLACES]):
         for x in range(q.place[w, DEGREE]):
-            e = w * width + x
-            if q.exit[e, MATE] >= 0:
+            q.exit[w * width + x, SEEN] = 0
+    for w in range(q.number[N_PLACES]):
+        for x in range(q.place[w, DEGREE]):
+            begin = w * width + x
+            if q.exit[begin, MATE] >= 0 or q.exit[begin, SEEN]:
                 continue
-            walked = walked_from(q, e)
-            if walked < 0:
-                continue
-            m = q.way[walked, OTHER]
-            found = options(q, e, walked, may_be_new)
-            if closed:
-                for j in range(found):
-                    if q.option[j] >= 0:
-                        q.exit[q.option[j], ENTERED] += 1
-                        q.exit[q.option[j], ENTERED_BY] = e
-            if found == 0:
-                q.node[m, FAILS] += 1
-                return e, 0
-            if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
-                chosen = e
-                fewest = found
-                heaviest = q.node[m, FAILS]
-                for j in range(found):
-                    best[j] = q.option[j]
+            met = contour(q, begin)
+            for at in range(met):
+                e = q.stub[at]
+                walked = walked_from(q, e)
+                if walked < 0:
+                    continue
+                m = q.way[walked, OTHER]
+                found = options(q, at, met, walked, may_be_new)
+                if closed:
+                    for j in range(found):
+                        if q.option[j] >= 0:
+                            q.exit[q.option[j], ENTERED] += 1
+                            q.exit[q.option[j], ENTERED_BY] = e
+                if found == 0:
+                    q.node[m, FAILS] += 1
+                    return e, 0
+                if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
+                    chosen = e
+                    fewest = found
+                    heaviest = q.node[m, FAILS]
+                    for j in range(found):
+                        best[j] = q.option[j]
     if not closed or chosen < 0:
         return chosen, fewest
     for w in range(q.number[N_PLACES]):

@@ -151,7 +151,7 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
         angle,
         alike.shifts,
         np.zeros((places, 5), np.int64),
-        np.full((places * width, 5), -1, np.int64),
+        np.full((places * width, 6), -1, np.int64),
         np.zeros((places * width, 2)),
         kind,
         sign,
