@@ -222,7 +222,7 @@ def _expected(seen: Sequence[object]) -> float:
 
 
 def _worth(maps: Sequence[_Map], start: list[int], steps: tuple[int, ...]) -> tuple[int, float]:
-    """Return how good some steps are, less being better: minus the maps that foretell nothing there, and how many are left."""
+    """Return how good steps are, less being better: minus the maps that foretell nothing there, and how many are left."""
     seen: list[object] = []
     for one, begin in zip(maps, start, strict=True):
         back, sights = begin, []
