@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
+    from .doubt.joining import joined
     from .doubt.localizer import Candidate, Localizer, Move
     from .doubt.merging import Merged, Overlaps, merge, overlaps
     from .doubt.opening import open_map
@@ -93,6 +94,7 @@ __all__ = [
     "estimate",
     "explore",
     "health",
+    "joined",
     "locate",
     "merge",
     "open_map",
@@ -111,6 +113,7 @@ __getattr__, __dir__ = attach(
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
+        "doubt.joining": ("joined",),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "doubt.merging": ("Merged", "Overlaps", "merge", "overlaps"),
         "doubt.opening": ("open_map",),
