@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
     from .doubt.hypotheses import Hypotheses, Hypothesis, hypotheses
+    from .doubt.joining import joined
     from .doubt.localizer import Candidate, Localizer, Move
     from .doubt.merging import Merged, Overlaps, merge, overlaps
     from .doubt.opening import open_map
@@ -114,6 +115,7 @@ __all__ = [
     "explore",
     "health",
     "hypotheses",
+    "joined",
     "listed_maps",
     "locate",
     "locate_among",
@@ -141,6 +143,7 @@ __getattr__, __dir__ = attach(
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
         "doubt.hypotheses": ("Hypotheses", "Hypothesis", "hypotheses"),
+        "doubt.joining": ("joined",),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
         "doubt.why_not": ("WhyNot",),
         "doubt.merging": ("Merged", "Overlaps", "merge", "overlaps"),

@@ -17,6 +17,7 @@ from ninefold.mapping import (
     WalkHeader,
     build,
     explore,
+    joined,
     merge,
     open_map,
     overlaps,
@@ -370,6 +371,36 @@ def test_without_a_compass_a_place_that_looks_alike_after_a_turn_is_not_guessed(
     assert merge(cross, cross, way=(("a", "b"), ("a", "b"))).known.n_open == 3
     found = overlaps(cross, cross, least=1)
     assert {len(one.shared) for one in found} >= {1, 2}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_two_walks_without_names_are_explained_like_one(seed):
+    walk = explore(grid(3, 2), seed=seed, tour="covering", places=False).walk
+    n = len(walk.places) - 1
+    whole = hypotheses(walk)
+    for middle in (n // 3, n // 2):
+        both = joined(cut(walk, 0, middle), cut(walk, middle, n), at=(middle, 0))
+        found = hypotheses(both)
+        assert (found.count, found.exact) == (whole.count, whole.exact)
+        assert both.n_legs == n
+    # a second walk that was in the shared place half-way through
+    both = joined(cut(walk, 0, n // 2), cut(walk, n // 4, n), at=(n // 2, n // 2 - n // 4))
+    (one,) = hypotheses(both, closed=True)
+    (true,) = hypotheses(walk, closed=True)
+    assert one.n_places == true.n_places == 6
+    assert nx.is_isomorphic(one.plane.to_networkx(), true.plane.to_networkx())
+
+
+def test_walks_that_cannot_be_joined():
+    walk = explore(grid(2, 2)).walk
+    with pytest.raises(BadInput, match="visits of the second walk are numbered 0 to 4; there is no 5"):
+        joined(walk, walk, at=(0, 5))
+    with pytest.raises(BadInput, match="'v00' and 'v10' are two names, so not one place"):
+        joined(walk, walk, at=(0, 1))
+    with pytest.raises(BadInput, match="the second walk has no compass"):
+        joined(walk, Walk(WalkHeader(compass=False), walk.events), at=(0, 0))
+    with pytest.raises(BadInput, match="the first is a Walk"):
+        joined("walk.jsonl", walk, at=(0, 0))
 
 
 def test_a_hypothesis_can_be_merged():

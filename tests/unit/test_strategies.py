@@ -5,7 +5,7 @@ import pytest
 from explored import component_map, same_up_to_numbering, simulated
 from worlds import KINDS
 
-from ninefold.errors import BadInput, UnknownName
+from ninefold.errors import AmbiguousDart, BadInput, UnknownName
 from ninefold.io.sources import samples
 from ninefold.mapping import (
     AskDriven,
@@ -219,6 +219,12 @@ def test_questions_that_have_no_answer():
         explore(world, tour=AskDriven("4", ["0", "1", "99"]))
     with pytest.raises(BadInput, match="all ways at '4' or '0' are walked, and none joins the two"):
         explore(world, tour=AskDriven("8", ["0", "1", "4"]))
+    arc = [(0, 0), (2, -1), (4, 0)]
+    doubled = SimulatedWorld(
+        [(0, 0), (4, 0), (2, 3), (9, 9)], [(0, 1), (1, 2), (2, 0), (0, 1), (2, 3)], [None] * 3 + [arc, None]
+    )
+    with pytest.raises(AmbiguousDart, match="2 ways join '0' and '1', so the ring is not one cycle"):
+        explore(doubled, start=1, tour=AskDriven("3", "012"))
     for ring in (["a", "b"], ["a", "b", "a"], []):
         with pytest.raises(BadInput, match="a ring is three places or more, each once"):
             AskDriven("x", ring)

@@ -59,7 +59,9 @@ exact under the declared noise.
 ==============  =================================================================================================
 `ask_driven`    `AskDriven`: explore until it is settled whether a place is inside a cycle
 `doubt_driven`  `DoubtDriven`: explore until one map is left, where no place is recognised
+`opening`       `open_map`: what a walk, a hypothesis or a plane map knows, with the exits nobody walked
 `merging`       `merge`, `overlaps`: maps of two robots, laid over each other
+`joining`       `joined`: two walks as one, for robots that recognise no place
 ==============  =================================================================================================
 
 `Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from ninefold._wording import quoted
-from ninefold.errors import BadInput, UnknownName
+from ninefold.errors import AmbiguousDart, BadInput, UnknownName
 
 from ..robot.open_map import OPEN, OpenMap, named, nearest, route
 
@@ -44,12 +44,16 @@ class AskDriven:
     BadInput
         For a ring that is none. While exploring: if all is walked and two places next to each other in the ring are not
         joined by a way.
+    AmbiguousDart
+        While exploring: if two ways join two places of the ring.
     UnknownName
         While exploring: if all is walked and there is no such place.
 
     Notes
     -----
-    It takes for granted that the place can be reached, as one has to who goes to look for it. Each new way costs O(V + E).
+    It takes for granted that the place can be reached, as one has to who goes to look for it. Where two ways join two places
+    of the ring, the ring is the one on the map; with both on the map it is ambiguous, and the error says so. Each new way
+    costs O(V + E).
 
     Examples
     --------
@@ -122,7 +126,12 @@ class AskDriven:
             a, b = places.get(one), places.get(other)
             if a is not None and b is not None:
                 mates = [known.mate[out] for out in known.exits(a)]
-                if any(back != OPEN and known.place[back] == b for back in mates):
+                joining = sum(back != OPEN and known.place[back] == b for back in mates)
+                if joining > 1:
+                    raise AmbiguousDart(
+                        f"{joining} ways join {quoted(one)} and {quoted(other)}, so the ring is not one cycle"
+                    )
+                if joining:
                     continue
                 ways = [out for place in (a, b) for out in known.open_exits(place)]
                 if not known.open_exits(a) or not known.open_exits(b):

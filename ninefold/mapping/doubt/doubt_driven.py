@@ -1,13 +1,15 @@
 """Exploring to find out which map is the right one, where places look alike.
 
 The robot recognises no place. What it knows is a tree, and the maps that explain it, with no more places than there are said
-to be. At a place it compares what these maps foretell: behind an exit that one map says leads to a dead end and another to a
-crossing, one of the two falls. It goes where fewest are left in expectation, over ways of which all maps foretell the same;
-and where no exit tells any two maps apart, to the nearest open exit of the smallest map.
+to be. It walks out the smallest map: to the nearest exit that is open in it, of several the one where the maps are left
+fewest in expectation. Once the smallest map is closed it compares what the maps foretell: behind an exit that one says leads
+to a dead end and another to a crossing, one of the two falls. It goes where fewest are left, over ways of which all maps
+foretell the same. Comparing first and walking out later takes longer: see ``benchmarks/exploration.py``.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -74,7 +76,9 @@ class DoubtDriven:
         Of the search for them, at most.
     ahead
         Places looked at ahead, all maps together, at most. 0 compares nothing: always to the nearest open exit of the
-        smallest map.
+        smallest map that has one.
+    eager
+        Compare the maps before the smallest is walked out: always the leg that leaves fewest.
 
     Attributes
     ----------
@@ -106,6 +110,7 @@ class DoubtDriven:
         maps: int = MAPS,
         decisions: int = DECISIONS,
         ahead: int = AHEAD,
+        eager: bool = False,
     ) -> None:
         for what, value in (("max_places", max_places), ("maps", maps), ("decisions", decisions)):
             if isinstance(value, bool) or not isinstance(value, int) or value < 1:
@@ -118,7 +123,7 @@ class DoubtDriven:
             maps,
             decisions,
         )
-        self._ahead = ahead
+        self._ahead, self._eager = ahead, eager
         self.left, self.exact = 1, False
         self._found: list[_Map] = []
         self._places = 0
@@ -158,11 +163,20 @@ class DoubtDriven:
         start = [
             one.here * _width(one) + (behind + one.shift) % one.degree[one.here] for one in maps if one.degree[one.here]
         ]
-        if len(maps) > 1 and start and (plan := _telling(maps, start, self._ahead)):
+        if not start:
+            return []
+        compares = self._ahead > 0 and len(maps) > 1
+        if compares and self._eager and (plan := _telling(maps, start, self._ahead)):
             return plan
-        for one, exit_behind in zip(maps, start, strict=False):
-            if plan := _to_open_exit(one, exit_behind):
-                return plan
+        if nearest := _to_open_exits(maps[0], start[0]):
+            if compares:
+                nearest.sort(key=lambda steps: _worth(maps, start, steps))
+            return list(nearest[0])[::-1]
+        if compares and (plan := _telling(maps, start, self._ahead)):
+            return plan
+        for one, at in zip(maps, start, strict=True):
+            if nearest := _to_open_exits(one, at):
+                return list(nearest[0])[::-1]
         return []
 
 
@@ -188,7 +202,7 @@ def _telling(maps: Sequence[_Map], start: list[int], ahead: int) -> list[int]:
             for step in range(maps[0].degree[behind[0] // _width(maps[0])]):
                 looked += len(maps)
                 backs = tuple(one.mate[_turned(one, at, step)] for one, at in zip(maps, behind, strict=True))
-                left = _expected(maps, backs)
+                left = _expected([None if back == OPEN else one.sight[back] for one, back in zip(maps, backs, strict=True)])
                 if left < len(maps) - 1e-9:
                     best = min(best or (left, (*steps, step)), (left, (*steps, step)))
                 elif OPEN not in backs and backs not in seen:
@@ -200,30 +214,43 @@ def _telling(maps: Sequence[_Map], start: list[int], ahead: int) -> list[int]:
     return []
 
 
-def _expected(maps: Sequence[_Map], backs: tuple[int, ...]) -> float:
-    """Return how many maps are left in expectation once it is seen where a step leads."""
-    groups: dict[int, int] = {}
-    for one, back in zip(maps, backs, strict=True):
-        if back != OPEN:
-            groups[one.sight[back]] = groups.get(one.sight[back], 0) + 1
-    unknown = len(maps) - sum(groups.values())
-    return (sum(size * (size + unknown) for size in groups.values()) + unknown * unknown) / len(maps)
+def _expected(seen: Sequence[object]) -> float:
+    """Return how many maps are left in expectation; `seen` is what each foretells, None where it foretells nothing."""
+    groups = Counter(one for one in seen if one is not None)
+    unknown = len(seen) - groups.total()
+    return (sum(size * (size + unknown) for size in groups.values()) + unknown * unknown) / len(seen)
 
 
-def _to_open_exit(one: _Map, start: int) -> list[int]:
-    """Return the steps, in reverse, to the nearest open exit of a map."""
+def _worth(maps: Sequence[_Map], start: list[int], steps: tuple[int, ...]) -> tuple[int, float]:
+    """Return how good steps are, less being better: minus the maps that foretell nothing there, and how many are left."""
+    seen: list[object] = []
+    for one, begin in zip(maps, start, strict=True):
+        back, sights = begin, []
+        for step in steps:
+            back = one.mate[_turned(one, back, step)]
+            if back == OPEN:
+                break
+            sights.append(one.sight[back])
+        seen.append(None if back == OPEN else tuple(sights))
+    return -seen.count(None), _expected(seen)
+
+
+def _to_open_exits(one: _Map, start: int) -> list[tuple[int, ...]]:
+    """Return the steps to each of the nearest open exits of a map; none if there is none."""
     ring: list[tuple[int, tuple[int, ...]]] = [(start, ())]
     seen = {start // _width(one)}
     while ring:
-        further = []
+        found, further = [], []
         for behind, steps in ring:
             for step in range(one.degree[behind // _width(one)]):
                 back = one.mate[_turned(one, behind, step)]
                 if back == OPEN:
-                    return [step, *reversed(steps)]
-                if back // _width(one) not in seen:
+                    found.append((*steps, step))
+                elif back // _width(one) not in seen:
                     seen.add(back // _width(one))
                     further.append((back, (*steps, step)))
+        if found:
+            return found
         ring = further
     return []
 
