@@ -49,7 +49,7 @@ def some_map(
         if search.done:
             return False
     found = closed_maps(tree, alike, until=inf if until is None else until, most=1, most_places=max_places)
-    return True if found.count else False if found.exact else None
+    return True if found.found else False if found.exact else None
 
 
 def held_same(alike: Likeness, n: int, m: int) -> Likeness:

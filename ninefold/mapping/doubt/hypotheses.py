@@ -285,7 +285,6 @@ def _closed_maps(
     """Find the closed maps; return (count, whether all)."""
     outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places, report=report)
     found += [_hypothesis(tree, places) for places in outcome.maps]
-    report(outcome.found)
     return outcome.found, outcome.exact
 
 
