@@ -112,7 +112,12 @@ def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift
     for off in frames:
         off = off - TAU * np.round(off / TAU)
         found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
-    return np.asarray(found & (tree.degree[m] == degree))
+    found &= tree.degree[m] == degree
+    here = np.broadcast_to(exits, there.shape)
+    row, column = np.nonzero(real & (tree.other[n] >= 0) & (tree.other[m[:, None], there] >= 0) & found[:, None])
+    ways = _ways_alike(tree, n[row], here[row, column], m[row], there[row, column])
+    found[row[~ways]] = False
+    return found
 
 
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:
@@ -161,27 +166,31 @@ def _walked_alike(tree: WalkTree, nodes: NDArray[np.int64], x: int, y: int) -> N
     """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); so where one is not walked."""
     first, second = np.flatnonzero(tree.other[nodes, x] >= 0), np.flatnonzero(tree.other[nodes, y] >= 0)
     agree = np.ones((nodes.size, nodes.size), np.bool_)
-    n, m = nodes[first], nodes[second]
-    if tree.compass:
-        off = _moved(_settled(tree, m, y), _settled(tree, n, x))
-        far = _moved(tree.heading[tree.other[m, y], tree.back[m, y]], tree.heading[tree.other[n, x], tree.back[n, x]])
-        near = _moved(tree.heading[m, y], tree.heading[n, x])
-        off += near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
-        agree[np.ix_(first, second)] = np.abs(off) < np.pi
-    else:
-        agree[np.ix_(first, second)] = np.abs(_moved(tree.turn[m, y], tree.turn[n, x])) <= 2 * tree.tolerance + EPSILON
+    agree[np.ix_(first, second)] = _ways_alike(tree, nodes[first][:, None], x, nodes[second][None, :], y)
     return agree
 
 
-def _settled(tree: WalkTree, n: NDArray[np.int64], x: int) -> NDArray[np.float64]:
+def _ways_alike(
+    tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int, m: NDArray[np.int64], y: NDArray[np.int64] | int
+) -> NDArray[np.bool_]:
+    """Whether ways that were walked out of exits x of nodes n turn as those out of exits y of nodes m; arrays broadcast.
+
+    With a compass they turn by as many whole turns, whatever the headings at their ends differ by; without, about alike.
+    """
+    if not tree.compass:
+        return np.asarray(np.abs(tree.turn[m, y] - tree.turn[n, x]) <= 2 * tree.tolerance + EPSILON)
+    off = _settled(tree, m, y) - _settled(tree, n, x)
+    far = tree.heading[tree.other[m, y], tree.back[m, y]] - tree.heading[tree.other[n, x], tree.back[n, x]]
+    near = tree.heading[m, y] - tree.heading[n, x]
+    off = off + near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
+    return np.asarray(np.abs(off) < np.pi)
+
+
+def _settled(tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int) -> NDArray[np.float64]:
     """Return the turn along the way out of an exit as the headings at its two ends have it."""
     turn = tree.turn[n, x]
     miss = tree.heading[tree.other[n, x], tree.back[n, x]] + np.pi - tree.heading[n, x] - turn
     return np.asarray(turn + miss - TAU * np.round(miss / TAU))
-
-
-def _moved(second: NDArray[np.float64], first: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(second[None, :] - first[:, None])
 
 
 def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:
