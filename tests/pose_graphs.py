@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ninefold.mapping import Visit, explore
@@ -34,14 +36,14 @@ def pose_graph(world, *, seed=0, step=10.0, right=1.0, wrong=0, odometry=(0.05, 
         beside.setdefault((a, b), []).append(2 * edge)
         beside.setdefault((b, a), []).append(2 * edge + 1)
     poses, stops = [], [0]
-    for a, b in zip(at, at[1:], strict=False):
+    for a, b in pairwise(at):
         dart = beside[a, b][0]
         path = np.asarray(world.path(dart // 2), float)[:: 1 - 2 * (dart % 2)]
-        for p, q in zip(path, path[1:], strict=False):
+        for p, q in pairwise(path):
             length = float(np.hypot(*(q - p)))
             yaw = float(np.arctan2(*(q - p)[::-1]))
-            for k in range(max(1, round(length / step))):
-                poses.append((*(p + (q - p) * k / max(1, round(length / step))), yaw))
+            count = max(1, round(length / step))
+            poses += [(*(p + (q - p) * k / count), yaw) for k in range(count)]
         stops.append(len(poses))
     poses.append((*np.asarray(world.points)[at[-1]], poses[-1][2]))
     true = np.array(poses)

@@ -12,7 +12,7 @@ from ._output import note, print_json, progress
 
 __all__ = ["claims"]
 
-YES, NO = 0, 1
+YES, NO, SPENT = 0, 1, 3
 
 
 def claims(
@@ -28,13 +28,17 @@ def claims(
     headings_only: Annotated[
         bool, typer.Option("--headings-only", help="Judge by headings alone, where lengths are not to be trusted.")
     ] = False,
+    budget: Annotated[
+        float | None,
+        typer.Option(min=0.001, help="Seconds to find the fewest to reject, 60 if left out.", show_default=False),
+    ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> int:
     """Name the loop closures that cannot be right, and why.
 
-    A loop of odometry and closures must come back to where it began, within the errors that the file declares. Exit code 1 if
-    any closure is rejected.
+    A loop of odometry and closures must come back to where it began, within the errors that the file declares. Exit code 1
+    if any closure is rejected, 3 if the budget is spent before it is known that no fewer will do.
     """
     from ninefold._files import refuse_existing
     from ninefold.io.graphs.closures import judge_closures
@@ -46,13 +50,14 @@ def claims(
         read = read_pose_graph(graph)
     closures = read.closures.size
     with progress(f"judging {counted(closures, 'closure')}"):
-        judged = judge_closures(read, headings_only=headings_only)
+        judged = judge_closures(read, headings_only=headings_only, budget=budget)
     if out is not None:
         write_without(read, [one.edge for one in judged.rejected], out, force=force)
     if judged.silent:
-        note(
-            f"no loop says anything about {counted(judged.silent, 'closure')}: the heading is lost on the way, or odometry is"
-        )
+        note(f"no loop says anything about {counted(judged.silent, 'closure')}: on the way the heading is lost, or odometry")
+    if not judged.exact:
+        note("the budget is spent: fewer might do; the file may declare smaller errors than there are")
+    code = SPENT if not judged.exact else NO if judged.rejected else YES
     if as_json:
         print_json(
             {
@@ -70,11 +75,12 @@ def claims(
                     }
                     for one in judged.rejected
                 ],
+                "exact": judged.exact,
                 "silent": judged.silent,
                 "out": None if out is None else str(out),
             }
         )
-        return NO if judged.rejected else YES
+        return code
     count = len(judged.rejected)
     cannot = f"{count:,} cannot be right" if count else "none that cannot be right"
     print(f"{graph}: {counted(int(read.poses.size), 'pose')}, {counted(closures, 'closure')}, {cannot}")
@@ -82,4 +88,4 @@ def claims(
         print(f"  line {read.line[one.edge] + 1}, {one.a} - {one.b}: {one.reason}")
     if out is not None:
         print(f"{out}: the graph without {'it' if count == 1 else 'them'}" if count else f"{out}: the graph as it was")
-    return NO if judged.rejected else YES
+    return code

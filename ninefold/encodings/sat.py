@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from types import TracebackType
 
-__all__ = ["DEFAULT_SOLVER", "SOLVERS", "SatSolver", "open_solver"]
+__all__ = ["DEFAULT_SOLVER", "SOLVERS", "SatSolver", "open_solver", "refutation"]
 
 SOLVERS = ("cadical195", "cadical153", "glucose42", "glucose4", "maplechrono", "minisat22")
 """Names that `open_solver` takes."""
@@ -92,14 +92,29 @@ def open_solver(name: str = DEFAULT_SOLVER, clauses: Iterable[Sequence[int]] = (
     return solver
 
 
+def refutation(clauses: Iterable[Sequence[int]], *, budget: float | None = None) -> bytes | None:
+    """Return a refutation of clauses in DRAT, for any checker; None if they have a model, or when `budget` seconds are over.
+
+    Written by CaDiCaL as it solves.
+
+    Examples
+    --------
+    >>> refutation([[1, 2], [-1, 2], [1, -2], [-1, -2]]).splitlines()[-1]
+    b'0'
+    """
+    with _PySat(DEFAULT_SOLVER, proof=True) as solver:
+        solver.add_clauses(clauses)
+        return solver.proof() if solver.solve(budget=budget) is False else None
+
+
 class _PySat:
     """A solver of python-sat."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, *, proof: bool = False) -> None:
         from pysat.solvers import Solver
 
         self._name = name
-        self._solver: Any = Solver(name=name)
+        self._solver: Any = Solver(name=name, with_proof=True) if proof else Solver(name=name)
         self._false = False  # python-sat's back ends disagree about the empty clause, so it is kept here
         self._answer: bool | None = None
         self._by_clause = False
@@ -179,6 +194,11 @@ class _PySat:
         if self._by_clause:
             return []
         return list(self._open().get_core() or ())
+
+    def proof(self) -> bytes:
+        if self._false:
+            return b"0\n"
+        return "".join(f"{line}\n" for line in self._open().get_proof()).encode()
 
     def close(self) -> None:
         if self._solver is not None:

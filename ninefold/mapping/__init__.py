@@ -27,9 +27,13 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .closing import Health, health
+    from .doubt.ambiguities import ambiguity
     from .doubt.among import Whereabouts, WhichMap, locate_among
     from .doubt.ask_driven import AskDriven
+    from .doubt.backbone import Backbone
     from .doubt.claims import Claim, Claims, Rejection, claims
+    from .doubt.completeness import Completeness
+    from .doubt.completeness_check import listed_maps
     from .doubt.doubt_driven import DoubtDriven
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
@@ -55,10 +59,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Again",
     "AskDriven",
+    "Backbone",
     "Candidate",
     "Claim",
     "Claims",
     "Closure",
+    "Completeness",
     "Dart",
     "DepthFirst",
     "Doubt",
@@ -98,6 +104,7 @@ __all__ = [
     "Whereabouts",
     "WhichMap",
     "WhyNot",
+    "ambiguity",
     "bridges",
     "build",
     "circular_mean",
@@ -107,6 +114,7 @@ __all__ = [
     "explore",
     "health",
     "hypotheses",
+    "listed_maps",
     "locate",
     "locate_among",
     "merge",
@@ -124,6 +132,10 @@ __getattr__, __dir__ = attach(
         "doubt.among": ("Whereabouts", "WhichMap", "locate_among"),
         "doubt.ask_driven": ("AskDriven",),
         "doubt.doubt_driven": ("DoubtDriven",),
+        "doubt.ambiguities": ("ambiguity",),
+        "doubt.backbone": ("Backbone",),
+        "doubt.completeness": ("Completeness",),
+        "doubt.completeness_check": ("listed_maps",),
         "doubt.doubts": ("Again", "Doubt"),
         "doubt.estimate": ("Estimate", "estimate"),
         "closing": ("Health", "health"),

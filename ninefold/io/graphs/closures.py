@@ -1,12 +1,12 @@
 """Which loop closures of a pose graph cannot be right.
 
-A pose graph tells where the robot's poses were, and of places neither exits nor names. So what `ninefold.mapping.claims` uses
-of a walk is not there: two passes by one place need not look alike, and the path may cross itself where nobody noticed. What
-there is is measurements, each with a declared error, and loops. A **loop** of odometry and one or two closures must come back to
-where it began, and face as it did: measured one after another, its poses miss that by an amount whose covariance follows from
-the declared ones. A miss that is less likely than `ODDS` under them convicts: a closure by itself where its loop is odometry
-alone, two closures together where the loop has both. Of the closures that clash in this way those are rejected of which there
-are fewest (MaxSAT).
+A pose graph tells of places neither exits nor names. So what `ninefold.mapping.claims` uses of a walk is not there: two
+passes by one place need not look alike, and the path may cross itself where nobody noticed. What a pose graph has are
+measurements, each with a declared error. A **loop** of odometry and one or two closures must come back to where it began,
+and face as it did; put one after another, its measurements miss that by an amount whose covariance follows from the
+declared ones. A miss that is less likely than `ODDS` convicts: a closure by itself where the rest of its loop is odometry,
+two closures together where the loop has both. As few closures are rejected as can be, so that no convicted one and no two
+convicted ones are left (MaxSAT).
 
 Assumed: errors are independent, Gaussian, and no larger than the information matrices say. Loops over which the heading is
 lost (standard deviation above `LOST`) say nothing. Nothing else is assumed of the place; where a robot keeps to streets or
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ninefold._wording import counted
-from ninefold.encodings.choice import cheapest_choice
+from ninefold.encodings.choice import cheapest_choice, quick_choice
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,8 +36,15 @@ __all__ = ["LOST", "ODDS", "JudgedClosures", "RejectedClosure", "judge_closures"
 ODDS = 1e-9
 """Misses less likely than this convict."""
 
+BUDGET = 60.0
+"""Seconds for choosing the fewest, if nothing else is asked for."""
+
 LOST = 0.5
 """Standard deviation of the heading around a loop, radians, beyond which first-order error propagation means nothing."""
+
+
+SINGULAR = 1e-12
+"""Least eigenvalue of the correlation of a miss below which rounding says more than the measurements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +85,14 @@ class JudgedClosures:
         Closures rejected, in the order of the file.
     silent
         Closures that no loop says anything about.
+    exact
+        Whether no fewer could be rejected. False where the budget was spent.
     """
 
     graph: PoseGraph = field(repr=False)
     rejected: tuple[RejectedClosure, ...]
     silent: int
+    exact: bool
 
 
 class _Frames(NamedTuple):
@@ -105,20 +115,23 @@ class _Closures(NamedTuple):
 
 
 class _Loops(NamedTuple):
-    """By how much loops miss: (n, 3) along x, y and in yaw; the covariance of that, (n, 3, 3); and the squared ratio, (n,)."""
+    """By how much loops miss, (n, 3) along x, y and in yaw; its covariance, (n, 3, 3); the squared ratio of both, (n,)."""
 
     miss: Floats
     covariance: Floats
     ratio: Floats
 
 
-def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedClosures:
+def judge_closures(graph: PoseGraph, *, headings_only: bool = False, budget: float | None = None) -> JudgedClosures:
     """Judge the loop closures of a pose graph.
 
     Parameters
     ----------
     headings_only
         Whether loops are judged by headings alone, for graphs whose lengths are not to be trusted.
+    budget
+        Seconds for choosing as few to reject as can be, 60 if left out. After that some are chosen that need not be the
+        fewest; so it is where errors are far larger than declared, and closures clash at random.
 
     Notes
     -----
@@ -143,16 +156,18 @@ def judge_closures(graph: PoseGraph, *, headings_only: bool = False) -> JudgedCl
             cores.append((k, other))
             clashes[k].append(other)
             clashes[other].append(k)
-    kept = cheapest_choice([1.0] * chosen.size, [[k] for k in range(chosen.size)], cores)
+    scores, readings = [1.0] * chosen.size, [[k] for k in range(chosen.size)]
+    fewest = cheapest_choice(scores, readings, cores, seconds=BUDGET if budget is None else budget)
+    kept = quick_choice(scores, readings, cores) if fewest is None else fewest
     rejected = []
     for k in range(chosen.size):
         if k in kept:
             continue
         edge = int(chosen[k])
         first, second = (int(graph.poses[end[edge]]) for end in (graph.first, graph.second))
-        reason, other = _reason(graph, chosen, judged, k, every, [j for j in clashes[k] if j in kept], headings_only)
+        reason, other = _reason(graph, judged, k, [j for j in clashes[k] if j in kept])
         rejected.append(RejectedClosure(edge, first, second, 1.0, reason, other))
-    return JudgedClosures(graph, tuple(rejected), int(np.count_nonzero(~heard)))
+    return JudgedClosures(graph, tuple(rejected), int(np.count_nonzero(~heard)), exact=fewest is not None)
 
 
 def judge_of(graph: PoseGraph, *, headings_only: bool = False) -> Judge:
@@ -161,38 +176,18 @@ def judge_of(graph: PoseGraph, *, headings_only: bool = False) -> Judge:
     return Judge(world, spread, chain, _closures(graph, graph.closures), headings_only=headings_only)
 
 
-def _reason(
-    graph: PoseGraph,
-    chosen: NDArray[np.int64],
-    judged: Judge,
-    k: int,
-    every: _Loops,
-    clashing: list[int],
-    headings_only: bool,
-) -> tuple[str, tuple[int, int] | None]:
+def _reason(graph: PoseGraph, judged: Judge, k: int, clashing: list[int]) -> tuple[str, tuple[int, int] | None]:
+    """Say why a closure is rejected, and name the one it contradicts most among those kept that it clashes with."""
     if not clashing:
-        return f"the odometry between its poses says otherwise: {_off(every, k, headings_only)}", None
+        return f"the odometry between its poses says otherwise: {judged.told(judged.alone(), k)}", None
     loops = judged.with_another(k, np.array(clashing))
     worst = int(loops.ratio.argmax())
-    edge = int(chosen[clashing[worst]])
+    edge = int(graph.closures[clashing[worst]])
     other = int(graph.poses[graph.first[edge]]), int(graph.poses[graph.second[edge]])
     many = f"{counted(len(clashing), 'closure')} that {'is' if len(clashing) == 1 else 'are'} kept"
     return (
-        f"it contradicts {many}: with {other[0]} - {other[1]} and the odometry between, {_off(loops, worst, headings_only)}",
+        f"it contradicts {many}: with {other[0]} - {other[1]} and the odometry between, {judged.told(loops, worst)}",
         other,
-    )
-
-
-def _off(loops: _Loops, k: int, headings_only: bool) -> str:
-    x, y, yaw = loops.miss[k].tolist()
-    sigma = np.sqrt(np.diagonal(loops.covariance[k]))
-    turned = f"{abs(degrees(yaw)):.3g} deg"
-    expected = f"{degrees(float(sigma[2])):.2g} deg"
-    if headings_only:
-        return f"the loop comes back turned by {turned}, and {expected} is its standard deviation"
-    return (
-        f"the loop comes back {np.hypot(x, y):.3g} m off and turned by {turned}; standard deviations are "
-        f"{np.hypot(sigma[0], sigma[1]):.2g} m and {expected}"
     )
 
 
@@ -238,6 +233,18 @@ class Judge:
             home, stretches + measured, (self._chain[a] == self._chain[c]) & (self._chain[b] == self._chain[d])
         )
 
+    def told(self, loops: _Loops, k: int) -> str:
+        """Say in words by how much a loop misses."""
+        x, y, yaw = loops.miss[k].tolist()
+        variance = np.diagonal(loops.covariance[k])
+        turned, expected = f"{abs(degrees(yaw)):.3g} deg", f"{degrees(float(variance[2]) ** 0.5):.2g} deg"
+        if self._headings_only:
+            return f"the loop comes back turned by {turned}, and the standard deviation of that is {expected}"
+        return (
+            f"the loop comes back {np.hypot(x, y):.3g} m off and turned by {turned}; standard deviations are "
+            f"{float(variance[0] + variance[1]) ** 0.5:.2g} m and {expected}"
+        )
+
     def _between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> Floats:
         """Return the covariance of the odometry between poses, seen from the frame where odometry begins."""
         return self._spread[np.maximum(a, b)] - self._spread[np.minimum(a, b)]
@@ -245,9 +252,17 @@ class Judge:
     def _loops(self, home: _Frames, covariance: Floats, joined: NDArray[np.bool_]) -> _Loops:
         miss = np.stack([home.shift.real, home.shift.imag, (home.turn + pi) % (2 * pi) - pi], axis=1)
         if self._headings_only:
-            ratio = miss[:, 2] ** 2 / covariance[:, 2, 2]
+            variance = covariance[:, 2, 2]
+            ratio = np.divide(miss[:, 2] ** 2, variance, out=np.full(variance.size, np.nan), where=variance > 0)
         else:
-            ratio = np.einsum("ni,ni->n", miss, np.linalg.solve(covariance, miss[:, :, None])[:, :, 0])
+            variance = np.diagonal(covariance, axis1=1, axis2=2)
+            fit: NDArray[np.bool_] = np.asarray((variance > 0).all(axis=1))
+            sigma = np.sqrt(np.where(fit[:, None], variance, 1.0))
+            alike = covariance / (sigma[:, :, None] * sigma[:, None, :])
+            fit &= np.linalg.eigvalsh(alike)[:, 0] > SINGULAR
+            alike[~fit] = np.eye(3)
+            size = miss / sigma
+            ratio = np.where(fit, np.einsum("ni,ni->n", size, np.linalg.solve(alike, size[:, :, None])[:, :, 0]), np.nan)
         heard = joined & (covariance[:, 2, 2] <= LOST**2)
         return _Loops(miss, covariance, np.where(heard, ratio, np.nan))
 

@@ -6,14 +6,15 @@
     VERTEX_SE2 1 1.03 0.01 -0.02
     EDGE_SE2 0 1 1.03 0.01 -0.02 500 0 0 500 0 5000
 
-A vertex is a pose: number, x, y, yaw. An edge measures the pose of the second in the frame of the first, and how sure that is:
-the upper triangle of the information matrix, row by row. Edges between a pose and the next are odometry, all others loop
-closures; if two edges join a pose and the next, the first is odometry. Vertices need not be listed. Other lines (``FIX``,
-landmarks, comments) are passed over and kept.
+A vertex is a pose: number, x, y, yaw. An edge measures the second pose in the frame of the first; after that comes how sure
+it is, the upper triangle of the information matrix, row by row. Edges between a pose and the next are odometry, all others
+loop closures; if two edges join a pose and the next, the first is odometry. Vertices need not be listed. Other lines
+(``FIX``, landmarks, comments) are passed over and kept.
 
 References
 ----------
-R. Kuemmerle, G. Grisetti, H. Strasdat, K. Konolige and W. Burgard, "g2o: a general framework for graph optimization", ICRA 2011.
+R. Kuemmerle, G. Grisetti, H. Strasdat, K. Konolige and W. Burgard, "g2o: a general framework for graph optimization",
+ICRA 2011.
 """
 
 from __future__ import annotations
@@ -156,15 +157,15 @@ def _graph(
     wrong = np.flatnonzero(~(smallest > 1e-12 * np.maximum(largest, 1e-300)) | (largest < 1e-12))
     if wrong.size:
         raise BadInput(
-            f"{shown(name)}, line {at[wrong[0]] + 1}: the information matrix is not positive definite, so nothing is said of how "
-            "sure the measurement is"
+            f"{shown(name)}, line {at[wrong[0]] + 1}: the information matrix is not positive definite, so it does not say "
+            "how sure the measurement is"
         )
     odometry = np.zeros(len(pairs), np.bool_)
     low = np.minimum(first, second)
     beside = np.flatnonzero(np.abs(first - second) == 1)
     beside = beside[np.abs(pairs[beside, 0] - pairs[beside, 1]) == 1]  # numbers one apart, not neighbours in the list
     odometry[beside[np.unique(low[beside], return_index=True)[1]]] = True
-    covariance = np.linalg.inv(information)
+    covariance = np.asarray(np.linalg.inv(information), np.float64)
     return PoseGraph(name, lines, poses, first, second, numbers[:, :3], covariance, at, odometry)
 
 

@@ -1,14 +1,15 @@
 """What follows when nodes of a folded walk are said to be one place: congruence, with a reason for everything.
 
 Two nodes that are one place have the same exits, and every exit leads one way: so the nodes beyond an exit that both walked
-are one place too, and so on. All this is kept as sets of nodes with shifts (exit x of a node is exit x + shift of its set). A
-*clash* is a pair of nodes that would have to be one place and cannot be. Every merger remembers what it follows from, so a
-clash names the assertions behind it; what follows from more assertions follows, so those alone already cannot hold together.
+are one place too, and so on. All this is kept as sets of nodes with shifts (exit x of a node is exit x + shift of its set).
+A *clash* is a pair of nodes that would have to be one place and cannot be. Every merger remembers what it follows from, so
+a clash names the assertions behind it; what follows from more assertions follows, so those alone already cannot hold
+together.
 
 References
 ----------
-R. Nieuwenhuis and A. Oliveras, "Fast congruence closure and extensions", Information and Computation 205, 2007: the forest of
-proofs.
+R. Nieuwenhuis and A. Oliveras, "Fast congruence closure and extensions", Information and Computation 205, 2007: the forest
+of proofs.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ A variable says that two nodes are one place, exit x of the first being exit x +
 and shift that `likeness` allows, so a pair without a variable is known to be two places. Clauses say
 
 - *transitive*: two nodes that are one place with a third are one place with each other, and the shifts add up;
-- *congruent*: the way out of one exit of a place leads to one place, by one exit of it, and turns alike; and no way is its own
-  reverse;
+- *congruent*: the way out of one exit of a place leads to one place, by one exit of it, and turns alike; and no way is its
+  own reverse;
 - *covered*, where no exit is left untravelled: an exit that a node did not walk is walked by another node of its place;
 - *together*: nodes known to be one place are.
 
@@ -157,14 +157,14 @@ def _covered(tree: WalkTree, pairs: NodePairs) -> list[list[int]]:
     ]
 
 
-def walkers(tree: WalkTree, pairs: NodePairs, n: int, exit: int, inside: NDArray[np.bool_] | None = None) -> list[int]:
+def walkers(tree: WalkTree, pairs: NodePairs, n: int, x: int, inside: NDArray[np.bool_] | None = None) -> list[int]:
     """Return the variables of which one holds if an exit that a node did not walk is walked by another of its place.
 
     With `inside`, only ways between those nodes count.
     """
     span = slice(pairs.start[n], pairs.start[n + 1])
     partner = pairs.partner[span]
-    beyond = tree.other[partner, (exit + pairs.along[span]) % tree.degree[n]]
+    beyond = tree.other[partner, (x + pairs.along[span]) % tree.degree[n]]
     walked = beyond >= 0
     if inside is not None:
         walked &= inside[partner] & inside[beyond]

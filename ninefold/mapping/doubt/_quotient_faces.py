@@ -1,8 +1,8 @@
 """The faces of a quotient of a folded walk, how they turn, and which pairs of nodes made them what they are.
 
-A quotient gives every node a place and a shift. Its faces are walked along the ways walked; a face turns by a whole number of
-turns, and in a plane map one turns -1 and all others +1. What a face turns depends on few pairs of nodes only: those where
-the walk round it goes on from a node by the exit that another node of the same place walked; and, where exits are left
+A quotient gives every node a place and a shift. Its faces are walked along the ways walked; a face turns by a whole number
+of turns, and in a plane map one turns -1 and all others +1. What a face turns depends on few pairs of nodes only: those
+where the walk round it goes on from a node by the exit that another node of the same place walked; and, where exits are left
 untravelled, on that no node walked those in its corners.
 """
 
@@ -124,6 +124,11 @@ class Members(NamedTuple):
     shift: NDArray[np.int64]
     walkers: dict[int, list[tuple[int, int]]]
 
+    def dart(self, node: int, x: int) -> int:
+        """Return the exit of a place that an exit of a node is."""
+        width = self.tree.heading.shape[1]
+        return int(self.place[node]) * int(width) + (x + int(self.shift[node])) % int(self.tree.degree[node])
+
 
 def members(
     tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], inside: NDArray[np.bool_] | None = None
@@ -133,50 +138,41 @@ def members(
     n, x = _ways(tree, inside)
     here = place[n] * width + (x + shift[n]) % tree.degree[n]
     walkers: dict[int, list[tuple[int, int]]] = {}
-    for key, node, exit in zip(here.tolist(), n.tolist(), x.tolist(), strict=True):
-        walkers.setdefault(key, []).append((node, exit))
+    for key, *walked in zip(here.tolist(), n.tolist(), x.tolist(), strict=True):
+        walkers.setdefault(key, []).append((walked[0], walked[1]))
     return Members(tree, place, shift, walkers)
 
 
-def steps(quotient: Members, node: int, exit: int) -> list[Step]:
+def steps(quotient: Members, node: int, out: int) -> list[Step]:
     """Walk a face from an exit that a node walked, once round; it begins where it first goes over to another node.
 
     Notes
     -----
     Complexity O(ways of the face times nodes that walked one exit).
     """
-    ahead = _onward(quotient, node, exit)
-    first = next(ahead)
-    begun = first
-    key = _dart(quotient, first)
+    ahead = _onward(quotient, node, out)
+    first = begun = next(ahead)
     while first.node == first.walker:
         first = next(ahead)
-        if _dart(quotient, first) == key:
+        if quotient.dart(first.node, first.exit) == quotient.dart(begun.node, begun.exit):
             break
-    if first.node == first.walker:  # no other node is met: the face of a tree
-        first = begun
-    key = _dart(quotient, first)
     found = [first]
     for step in ahead:
-        if _dart(quotient, step) == key:
+        if quotient.dart(step.node, step.exit) == quotient.dart(
+            first.node, first.exit
+        ):  # perhaps come to by another node than before: that is what closes it
+            found[0] = Step(step.node, step.exit, first.walker, first.walked, step.corner)
             break
         found.append(step)
     return found
 
 
-def _dart(quotient: Members, step: Step) -> int:
-    tree = quotient.tree
-    width = tree.heading.shape[1]
-    degree = int(tree.degree[step.node])
-    return int(quotient.place[step.node]) * width + (step.exit + int(quotient.shift[step.node])) % degree
-
-
-def _onward(quotient: Members, node: int, exit: int) -> Iterator[Step]:
+def _onward(quotient: Members, node: int, out: int) -> Iterator[Step]:
     """Walk a face for ever, from where the way out of an exit ends."""
     tree = quotient.tree
     width = tree.heading.shape[1]
     while True:
-        there, back = int(tree.other[node, exit]), int(tree.back[node, exit])
+        there, back = int(tree.other[node, out]), int(tree.back[node, out])
         degree, base, shift = int(tree.degree[there]), int(quotient.place[there]) * width, int(quotient.shift[there])
         corner: list[int] = []
         x = (back - 1) % degree
@@ -185,10 +181,10 @@ def _onward(quotient: Members, node: int, exit: int) -> Iterator[Step]:
             x = (x - 1) % degree
         who = quotient.walkers[base + (x + shift) % degree]
         if (there, x) in who:
-            node, exit = there, x
+            node, out = there, x
         else:
-            node, exit = min(who, key=lambda one: (abs(one[0] - there), one[0]))
-        yield Step(there, x, node, exit, tuple(corner))
+            node, out = min(who, key=lambda one: (abs(one[0] - there), one[0]))
+        yield Step(there, x, node, out, tuple(corner))
 
 
 def is_plane(around: list[Face]) -> bool:
@@ -216,9 +212,9 @@ def room(tree: WalkTree) -> Part:
 def smallest_part(part: Part, place: NDArray[np.int64], shift: NDArray[np.int64], root: int) -> NDArray[np.int64]:
     """Return the nodes of a connected part of the tree whose quotient is not plane, none if the whole is.
 
-    What is plane stays so when ways are taken away, as long as it is connected. So of parts that grow node by node from a root
-    the first that is not plane is found by bisection, again from the node that came last, and then leaves are left out until
-    none can be.
+    What is plane stays so when ways are taken away, as long as it is connected. So of parts that grow node by node from a
+    root the first that is not plane is found by bisection, again from the node that came last, and then leaves are left out
+    until none can be.
 
     Notes
     -----

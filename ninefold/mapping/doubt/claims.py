@@ -4,7 +4,7 @@ A recogniser that goes by looks says of pairs of visits that they are one place,
 together: whatever is not to be held true is rejected so that the scores of the rejected sum to the least. Two things can
 speak against claims.
 
-**Congruence.** One place has one list of exits, and every exit leads one way. So claims have consequences, from place to place
+**Congruence.** One place has one list of exits, and every exit leads one way. So claims have consequences, place by place
 along the ways that were walked, and where these clash the claims behind the clash cannot all be right. That holds whatever
 other places are the same; see `_congruence`.
 
@@ -25,12 +25,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ninefold._wording import counted, quoted
-from ninefold.encodings.choice import cheapest_choice
+from ninefold.encodings.choice import cheapest_choice, quick_choice
 from ninefold.errors import BadInput
 
 from ..robot.units import unit_of
@@ -54,8 +54,11 @@ __all__ = ["Claim", "Claims", "Rejection", "claims"]
 BUDGET = 60.0
 """Seconds that the search for maps may take, if nothing else is asked for."""
 
-TRIES = 20
+TRIES = 12
 """How often to try to make a set of claims that clash smaller before the cheapest to reject are chosen."""
+
+LEAST_SECONDS = 5.0
+"""What a choice of the cheapest claims may take even if the budget is spent; after that they are chosen without a search."""
 
 LISTED = 6
 """Claims that a reason lists."""
@@ -90,8 +93,8 @@ class Rejection:
     claim
         The claim.
     against
-        Other claims that it contradicts: all of them and it cannot be right together, and leaving out any one of them it can.
-        None where it cannot be right by itself.
+        Other claims that it contradicts: all of them and it cannot be right together, and leaving out any one of them it
+        can. None where it cannot be right by itself.
     visits
         Two visits that would then be the same place and cannot be; None where no clash of two places shows it, only that no
         plane map holds all these claims.
@@ -169,8 +172,9 @@ def claims(
     closed
         Whether the walk left no exit untravelled. Then much fewer maps are legal, and more wrong claims are found.
     budget
-        Seconds, 60 if left out, after which no more maps are searched for; with 0, claims are judged by congruence and by the
-        map alone that they themselves make.
+        Seconds, 60 if left out, after which no more maps are searched for; with 0, claims are judged by congruence and by
+        the map alone that they themselves make. Where the budget and 5 s more do not do to choose the cheapest, claims are
+        chosen that may cost more.
     tolerance
         Radians within which two headings may be of one exit, instead of the header's.
 
@@ -227,7 +231,7 @@ def _claims_of(
         return _claims_of_matrix(pairs, threshold, visits)
     found = []
     try:
-        listed = list(pairs)  # type: ignore[arg-type]
+        listed: list[Any] = list(pairs)  # type: ignore[arg-type]
     except TypeError:
         raise BadInput(
             f"claims are triples (visit, visit, score), or a matrix with a threshold; not {quoted(pairs)}"
@@ -257,7 +261,8 @@ def _claims_of_matrix(matrix: object, threshold: float, visits: int) -> tuple[Cl
     if alike.shape != (visits, visits):
         shape = " x ".join(map(str, alike.shape)) or "a single number"
         raise BadInput(
-            f"how alike visits look is {shape}, and the walk has {counted(visits, 'visit')}; the matrix is {visits} x {visits}"
+            f"how alike visits look is {shape}, and the walk has {counted(visits, 'visit')}; give a matrix of "
+            f"{visits} x {visits}"
         )
     wrong = np.argwhere(~np.isfinite(alike))
     if wrong.size:
@@ -288,6 +293,7 @@ class _Judging:
             self._readings.append(list(range(first, len(self._assertions))))
         self._congruence = Congruence(tree, _facts(tree))
         self._cores: list[Core] = []
+        self._cheapest = True
 
     def judged(self) -> Claims:
         """Alternate between the cheapest choice and what speaks against it."""
@@ -307,13 +313,19 @@ class _Judging:
                     found = [Core(self._blamed(list(chosen.values())), None)]
             if not found:
                 told = one if not isinstance(one, bool) else None
-                return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None)
+                return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None and self._cheapest)
             self._cores += found
 
     def _choice(self) -> dict[int, int]:
         if not self._cores and all(self._readings):
             return {claim: means[0] for claim, means in enumerate(self._readings)}
-        return cheapest_choice([one.score for one in self._said], self._readings, [core.members for core in self._cores])
+        given = [one.score for one in self._said], self._readings, [core.members for core in self._cores]
+        if self._cheapest:
+            found = cheapest_choice(*given, seconds=max(self._until - monotonic(), LEAST_SECONDS))
+            if found is not None:
+                return found
+            self._cheapest = False
+        return quick_choice(*given)
 
     def _clashing(self, chosen: dict[int, int]) -> list[Core]:
         """Return sets of chosen assertions that clash, enough of them to convict those that clash with all the rest."""
@@ -335,7 +347,7 @@ class _Judging:
         return found + [core for k in suspects for core in self._against(k, left)]
 
     def _against(self, suspect: int, agreed: dict[int, Assertion]) -> list[Core]:
-        """Return clashes of a suspect with others that agree, no two with another in common, until rejecting it is cheaper."""
+        """Return clashes of a suspect with others that agree, until rejecting it is cheaper; it alone is in two of them."""
         left = dict(agreed)
         left[suspect] = self._assertions[suspect]
         found: list[Core] = []
@@ -402,12 +414,12 @@ class _Judging:
 
     def _why(self, reading: int, chosen: dict[int, int]) -> Core:
         """Return what speaks against a rejected assertion: others that are kept, if these alone convict it."""
-        kept = {k: self._assertions[k] for k in chosen.values()}
-        core = core_of(self._congruence, kept | {reading: self._assertions[reading]})
-        if core is not None:
-            return core
-        known = set(kept)
-        return min((one for one in self._cores if reading in one.members), key=lambda one: len(set(one.members) - known))
+        kept = set(chosen.values())
+        cores = [one for one in self._cores if reading in one.members]
+        enough = [one.members for one in cores if one.clash is not None and kept.issuperset(set(one.members) - {reading})]
+        others = min(enough, key=len, default=kept)
+        core = core_of(self._congruence, {k: self._assertions[k] for k in [*sorted(set(others) - {reading}), reading]})
+        return min(cores, key=lambda one: len(set(one.members) - kept)) if core is None else core
 
     def _reason(self, others: tuple[Claim, ...], clash: Clash | None) -> str:
         given = ""
@@ -423,6 +435,7 @@ class _Judging:
     def _words(self, clash: Clash) -> str:
         """Say how two nodes cannot be one place."""
         p, q = self._visit(clash.node), self._visit(clash.other)
+        way = self._exit(clash.node, clash.exit)
         match clash.kind:
             case "exits":
                 return self._unlike(clash.node, clash.other, p, q)
@@ -431,14 +444,11 @@ class _Judging:
                 return f"visits {p} and {q} would be one place, but they are called {names[0]} and {names[1]}"
             case "twice":
                 return (
-                    f"visits {p} and {q} would be one place, the exit at {self._exit(clash.node, clash.exit)} of the one being "
+                    f"visits {p} and {q} would be one place, the exit at {way} of the one being "
                     f"that at {self._exit(clash.other, clash.as_exit)} of the other, and by another way the same one"
                 )
             case "back":
-                return (
-                    f"the way out of visit {p} at {self._exit(clash.node, clash.exit)} would come back by the very exit that "
-                    "it leaves by"
-                )
+                return f"the way out of visit {p} at {way} would come back by the very exit that it leaves by"
 
     def _unlike(self, n: int, m: int, a: int, b: int) -> str:
         tree = self._tree
@@ -449,10 +459,11 @@ class _Judging:
             )
         first, second = (self._unit.headings(tree.heading[k, : tree.degree[k]].tolist()) for k in (n, m))
         turned = "" if tree.compass else ", however they are turned"
-        return f"visits {a} and {b} would be one place, but their exits lie at {first} and at {second} {self._unit.measure}{turned}"
+        lie = f"{first} and at {second} {self._unit.measure}{turned}"
+        return f"visits {a} and {b} would be one place, but their exits lie at {lie}"
 
-    def _exit(self, node: int, exit: int) -> str:
-        return self._unit.heading(float(self._tree.heading[node, exit]))
+    def _exit(self, node: int, number: int) -> str:
+        return self._unit.heading(float(self._tree.heading[node, number]))
 
     def _visit(self, node: int) -> int:
         """Return the first visit of a node."""

@@ -20,6 +20,8 @@ from ninefold.errors import BadInput
 from ..heading import TAU
 from ..plane import PlaneMap
 from ..robot.walk import Walk
+from .backbone import Backbone, backbone_of
+from .completeness import Completeness, completeness
 from .likeness import Likeness, likeness
 from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
@@ -120,6 +122,60 @@ class Hypotheses:
     def ambiguity(self) -> float | None:
         """Bits that the walk leaves open: the logarithm to base 2 of the number of maps; None where it is not known."""
         return log2(self.count) if self.exact and self.count else None
+
+    def backbone(self, *, budget: float = 10.0) -> Backbone | None:
+        """Return what all maps agree on, also where they are too many to list; None if there is no map.
+
+        Parameters
+        ----------
+        budget
+            Seconds that a solver may be asked for, where not all maps are kept.
+
+        Examples
+        --------
+        >>> from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader, hypotheses
+        >>> north, south = Heading.from_degrees(90), Heading.from_degrees(270)
+        >>> place, leg = Visit(None, exits=(north, south)), Samples.of(north, north)
+        >>> back = Samples.of(south, south)
+        >>> found = hypotheses(Walk(WalkHeader(), (place, leg, place, leg, place, back, place))).backbone()
+        >>> found.known(1, 3), found.known(0, 2), found.open.shape
+        (True, False, (0, 2))
+        """
+        complete = self.exact and len(self.maps) == self.count
+        return backbone_of(
+            self.tree,
+            self.alike,
+            [one.place for one in self.maps],
+            complete=complete,
+            closed=self.closed is True,
+            narrowed=self.max_places is not None or self.closed is False,
+            budget=budget,
+        )
+
+    def evidence(self, *, budget: float | None = None) -> Completeness:
+        """Return evidence, for programs that are not ours, that the maps are all that explain the walk.
+
+        Parameters
+        ----------
+        budget
+            Seconds, 600 if left out.
+
+        Raises
+        ------
+        BadInput
+            Where there is none to give: the count is not exact, not all maps were kept, or only some were asked for.
+        TooLarge
+            When the budget is spent.
+        """
+        if not self.exact or len(self.maps) != self.count:
+            raise BadInput("only an exact count of maps that are all kept has evidence; give a larger budget or limit")
+        if self.contradiction is not None or self.max_places is not None or self.closed is False:
+            raise BadInput(
+                "evidence is about all maps, or all closed ones, of a walk that does not contradict itself: leave out "
+                "max_places, and let closed be None or True"
+            )
+        maps = [np.stack([one.place, one.shift], axis=1) for one in self.maps]
+        return completeness(self.tree, self.alike, maps, closed=self.closed is True, budget=budget)
 
     def why_not(self, i: int, j: int, *, budget: float = 10.0) -> WhyNot | None:
         """Return why two visits, counted from 0, are the same place in none of the maps; None if they are in one.
@@ -229,8 +285,8 @@ def _closed_maps(
     """Find the closed maps; return (count, whether all)."""
     outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places, report=report)
     found += [_hypothesis(tree, places) for places in outcome.maps]
-    report(outcome.count)
-    return outcome.count, outcome.exact
+    report(outcome.found)
+    return outcome.found, outcome.exact
 
 
 def _open_maps(

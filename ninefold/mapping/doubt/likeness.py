@@ -112,7 +112,7 @@ def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift
     for off in frames:
         off = off - TAU * np.round(off / TAU)
         found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
-    return found & (tree.degree[m] == degree)
+    return np.asarray(found & (tree.degree[m] == degree))
 
 
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:

@@ -19,13 +19,14 @@ from .reading import settled_reading
 from .ways import bundles, partings, way_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Hashable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from .evidence import Evidence
     from .exit_lists import Directions
     from .noise import NoiseModel
+    from .orders import StarOrder
     from .reading import Reading
     from .ways import Bundle
 
@@ -104,6 +105,7 @@ class _Gathering:
         self.noise, self.evidence, self.variance, self.floor = noise, evidence, variance, floor
         self.directions, self.effort = directions, effort
         self.misses, self.free = 0.0, 0
+        self.listed: dict[Hashable, tuple[list[StarOrder], float] | None] = {}
         for found in directions:
             if found is not None and found.free:
                 self.misses += found.misses / noise.sigma**2
@@ -150,7 +152,7 @@ class _Gathering:
         for parts in product(*options) if number <= MOST_READINGS else [tuple(each[0] for each in options)]:
             settled.append(self._settled([bundle for group in parts for bundle in group]))
             self.effort -= settled[-1].judged
-            if settled[-1].crowded:  # not counted in any case, and the others would take as long
+            if settled[-1].crowded or self.effort <= 0:  # not counted in any case, and the others would take as long
                 break
         return self._estimated(settled, open_bundles, uncounted, counted_all=len(settled) == number)
 
@@ -198,7 +200,8 @@ class _Gathering:
             way_of(part, self.evidence, self.variance, self.floor, coarsest)
             for part in sorted(parts, key=lambda part: int(part.legs[0]))
         ]
-        return settled_reading(self.evidence, self.noise, ways, self.directions, effort=max(self.effort, 0))
+        effort = max(self.effort, 0)
+        return settled_reading(self.evidence, self.noise, ways, self.directions, effort=effort, listed=self.listed)
 
     # -- the answer ----------------------------------------------------------------------------------------------------
 

@@ -1,11 +1,11 @@
-"""Every closed map of a folded walk: the search by faces and the SAT solver side by side, in turn, until one has come to its end.
+"""Every closed map of a folded walk: the search by faces and the SAT solver, in turn, until one has come to its end.
 
-Grids, where everything looks alike, yield to the search and not to SAT; long walks in irregular worlds the reverse, and which it
-will be is not known before. The search begins with one node after another, with growing numbers of decisions, as the node it
-begins with decides how long it takes. The solver starts once the search has taken as long as laying out its clauses will
-take, then both have equal time, and the solver a quarter after `EQUAL` seconds. Both find all maps, so the answer does not
-depend on which is first; where more maps are found than are kept, those with the fewest places are, and then by the numbers of
-their places.
+Grids, where everything looks alike, yield to the search and not to SAT; long walks in irregular worlds the reverse, and
+which it will be is not known before. The search begins with one node after another, with growing numbers of decisions, as
+the node it begins with decides how long it takes. The solver starts once the search has taken as long as laying out its
+clauses will take, then both have equal time, and the solver a quarter after `EQUAL` seconds. Both find all maps, so the
+answer does not depend on which is first; where more maps are found than are kept, those with the fewest places are, and then
+by the numbers of their places.
 """
 
 from __future__ import annotations
@@ -60,14 +60,14 @@ class ClosedMaps(NamedTuple):
     ----------
     maps
         Place and shift of every node, (N, 2) each: those kept.
-    count
+    found
         How many were found.
     exact
         Whether these are all.
     """
 
     maps: list[NDArray[np.int64]]
-    count: int
+    found: int
     exact: bool
 
 

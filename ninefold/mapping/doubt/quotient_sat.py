@@ -1,11 +1,11 @@
 """Every plane map that explains a folded walk, found by a SAT solver.
 
 One variable a pair of nodes that can be one place; clauses for what holds of every quotient (`_node_pairs`). A solution is a
-quotient, and its faces are walked: where one turns neither +1 nor -1, or two turn -1, or none (a torus), it is no plane map. Every
-connected part of a plane map is one, so the fault is looked for in the smallest part of the walk that shows it. It gives a
-*cut*, a clause over the few pairs of nodes that made the faces of that part what they are: "not all of these pairs, or somebody
-walked an exit in a corner, or the walk went round twice". Cuts are added until a solution is a map, which is then excluded in its
-turn, until there is no solution.
+quotient, and its faces are walked: where one turns neither +1 nor -1, or two turn -1, or none (a torus), it is no plane map.
+Every connected part of a plane map is one, so the fault is looked for in the smallest part of the walk that shows it. It
+gives a *cut*, a clause over the few pairs of nodes that made the faces of that part what they are: "not all of these pairs,
+or somebody walked an exit in a corner, or the walk went round twice". Cuts are added until a solution is a map, which is
+then excluded in its turn, until there is no solution.
 
 In a map of one piece turning of +1 for all faces but one, and -1 for that, implies genus 0 (Gauss and Bonnet): nothing else
 has to be cut.
@@ -26,7 +26,7 @@ from ninefold.encodings.sat import open_solver
 from ninefold.errors import BadInput
 
 from ._node_pairs import clauses, node_pairs, walkers
-from ._quotient_faces import Face, Step, faces, members, room, smallest_part, steps
+from ._quotient_faces import Face, Members, Step, faces, members, room, smallest_part, steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +85,7 @@ class QuotientSat:
     def __init__(self, tree: WalkTree, alike: Likeness, *, closed: bool = False, most_places: int | None = None) -> None:
         if not tree.compass:
             raise BadInput(
-                "a walk without a compass has no SAT model here: its closing residue depends on more than pairs of nodes"
+                "a walk without a compass has no model for a solver: how it closes is not settled by pairs of nodes"
             )
         self.tree, self.alike = tree, alike
         self.pairs = node_pairs(tree, alike)
@@ -210,15 +210,16 @@ class QuotientSat:
         walk = {face: steps(at, face.node, face.exit) for face in around}
         made = {face: self._made_by(walk[face], inside) for face in around}
         wrong, outer = [face for face in around if abs(face.turns) != 1], [face for face in around if face.turns == -1]
-        found: list[tuple[set[int], tuple[Face, ...]]] = []
-        for face in wrong:
-            found.append((made[face] | self._fewer_rounds(walk[face], face.turns), (face,)))
+        found: list[tuple[set[int], tuple[Face, ...]]] = [
+            (made[face] | self._fewer_rounds(walk[face], face.turns), (face,)) for face in wrong
+        ]
         for face, other in combinations(outer, 2):
             found.append((made[face] | made[other] | self._one_face(walk[face], walk[other]), (face, other)))
         if not found:
-            found.append((set().union(*made.values()), tuple(around)))
-        cuts = [Cut(tuple(sorted(clause)), which, tuple(part.tolist())) for clause, which in found]
-        return min(cuts, key=lambda cut: (len(cut.clause), cut))
+            found.append((set().union(*made.values()) | self._nothing_else(at, list(walk.values())), tuple(around)))
+        clause, which = min(found, key=lambda one: (len(one[0]), one[1]))
+        begins = tuple(Face(walk[face][0].walker, walk[face][0].walked, face.turns) for face in which)
+        return Cut(tuple(sorted(clause)), begins, tuple(part.tolist()))
 
     def _made_by(self, around: list[Step], inside: NDArray[np.bool_]) -> set[int]:
         """Return literals of which one holds if a face is not as it was walked."""
@@ -229,6 +230,18 @@ class QuotientSat:
                 literals.add(-self.pairs.table[step.node, step.walker, along])
             for x in step.corner:
                 literals.update(walkers(self.tree, self.pairs, step.node, x, inside))
+        return literals
+
+    def _nothing_else(self, at: Members, walks: list[list[Step]]) -> set[int]:
+        """Return literals of which one holds if some way back along a face belongs to none of them."""
+        walker = {at.dart(step.walker, step.walked): step for walk in walks for step in walk}
+        literals = set()
+        for step in walker.values():
+            node, x = int(self.tree.other[step.walker, step.walked]), int(self.tree.back[step.walker, step.walked])
+            back = walker[at.dart(node, x)]
+            if back.walker != node:
+                along = (back.walked - x) % int(self.tree.degree[node])
+                literals.add(-self.pairs.table[node, back.walker, along])
         return literals
 
     def _fewer_rounds(self, around: list[Step], turns: int) -> set[int]:

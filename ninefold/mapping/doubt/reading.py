@@ -26,7 +26,7 @@ from .settling import Settled, Star, settle
 from .whole_turns import misses_by_outer_face, outer_faces, settled_turns
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Hashable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -258,6 +258,7 @@ def settled_reading(
     directions: Sequence[Directions | None],
     *,
     effort: int,
+    listed: dict[Hashable, tuple[list[StarOrder], float] | None],
 ) -> Reading:
     """List the orders at every place and settle them.
 
@@ -269,6 +270,8 @@ def settled_reading(
         (V,) what the lists of a place say, None where there are none.
     effort
         As in `settle`.
+    listed
+        The orders of places that other readings of the walk have listed; most places are the same in all of them.
     """
     darts: list[list[int]] = [[] for _ in evidence.places]
     for e, way in enumerate(ways):
@@ -281,7 +284,10 @@ def settled_reading(
     for place, here in enumerate(darts):
         if not here:
             continue
-        found = star_orders(heading[here].tolist(), variance[here].tolist(), directions[place], closes=not noise.useless)
+        evidence_here = tuple(heading[here].tolist()), tuple(variance[here].tolist())
+        if (place, evidence_here) not in listed:
+            listed[place, evidence_here] = star_orders(*evidence_here, directions[place], closes=not noise.useless)
+        found = listed[place, evidence_here]
         if found is None:
             crowded.append(place)
             continue
