@@ -7,7 +7,7 @@ from math import radians
 import pytest
 
 from ninefold.errors import BadInput, WalkError
-from ninefold.mapping import Heading, Samples, Visit, Walk, hypotheses
+from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader, hypotheses
 from ninefold.mapping.doubt.likeness import likeness
 from ninefold.mapping.doubt.stretches import smallest_stretch, stretch_of
 from ninefold.mapping.doubt.walk_tree import fold
@@ -55,6 +55,41 @@ def test_a_loop_that_does_not_turn():
 def test_a_loop_that_turns_either_way_round_is_none():
     for legs in ("ENWS", "NESW"):
         assert Reasons(*_tree(straight(legs))).plain(0, 4) is None
+
+
+def corners(times, exits, *, compass=True, drift=0.0, begin=0.0):
+    """Round a block, east, north, west, south; the exits of every corner against the way on, degrees; and a drift a leg."""
+    events, heading = [], begin
+    for k in range(4 * times + 1):
+        if k:
+            events.append(Samples.of(*(Heading.from_degrees(heading - 90.0 + drift * m) for m in (k - 1, k))))
+        events.append(Visit(None, tuple(Heading.from_degrees(heading + drift * k + one) for one in exits)))
+        heading += 90.0
+    return Walk(WalkHeader(compass=compass, tolerance=0.03), tuple(events))
+
+
+def test_a_face_may_be_walked_round_several_times():
+    twice = corners(2, (0.0, 90.0))
+    assert Reasons(*_tree(twice)).plain(0, 8) is None
+    assert hypotheses(twice).why_not(0, 8) is None
+    assert Reasons(*_tree(twice)).plain(0, 1).kind == "exits"
+
+
+def test_exits_that_another_list_begins_with():
+    """Without a compass and with a drift, one list begins with the exit at 181 degrees, written -179."""
+    once = corners(1, (0.0, 90.0, 180.0), compass=False, drift=1.0)
+    tree, likely = _tree(once)
+    assert int(likely.shifts[0, tree.node_of[4]]) > 1
+    assert Reasons(tree, likely).plain(0, 4) is None
+    assert hypotheses(once).why_not(0, 4) is None
+
+
+def test_consequences_between_lists_that_begin_differently():
+    twice = corners(2, (0.0, 90.0, 180.0), compass=False, drift=1.0, begin=-3.5)
+    tree, likely = _tree(twice)
+    assert all(int(likely.shifts[tree.node_of[k], tree.node_of[k + 4]]) > 1 for k in range(3))
+    assert Reasons(tree, likely).plain(0, 4) is None
+    assert any(len(set(one.visits.tolist())) == 4 for one in hypotheses(twice))
 
 
 def test_a_face_that_nothing_opens_into():
