@@ -52,13 +52,13 @@ def renamed(walk, called):
     )
 
 
-def same_map(found: PlaneMap, true: PlaneMap) -> None:
+def same_map(found: PlaneMap, true: PlaneMap, degrees: int = 3) -> None:
     """Same names, ways, rotations and outer face; ways are told apart by their ends and headings."""
     assert set(found.vertex_names) == set(true.vertex_names)
 
     def key(plane, d):
         one, other = (plane.vertex_names[int(plane.tail[x])] for x in (d, d ^ 1))
-        yaws = [round(float(np.degrees(plane.heading[x])) / 3) % 120 for x in (d, d ^ 1)]
+        yaws = [round(float(np.degrees(plane.heading[x])) / degrees) % (360 // degrees) for x in (d, d ^ 1)]
         return one, other, *yaws
 
     ours, theirs = ({key(p, d): d for d in range(p.tail.size)} for p in (found, true))
@@ -102,6 +102,21 @@ def test_halves_of_the_district_make_the_district():
     placed = merge(first, other, at=(shared, f"{shared}'"))
     assert all(b == f"{a}'" for a, b in placed.shared)
     assert len(placed.shared) > 50
+
+
+def test_walks_whose_headings_err_declare_by_how_much():
+    world = grid(4, 4)
+    walk = explore(world, seed=1, tour="covering", noise=0.02, tolerance=0.2).walk
+    n = len(walk.places) - 1
+    first, second = cut(walk, 0, 2 * n // 3), cut(walk, n // 3, n)
+    same_map(merge(first, second, same_names=True).plane, explored_map(world), degrees=30)
+    with pytest.raises(MapsDisagree, match="the exits lie at"):
+        merge(first, second, same_names=True, tolerance=0.001)
+
+
+def explored_map(world):
+    """The map of a walk without errors."""
+    return build(explore(world).walk)
 
 
 def test_the_overlap_of_two_walks_in_the_district_is_found():

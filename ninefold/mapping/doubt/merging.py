@@ -21,7 +21,7 @@ from ninefold.errors import BadInput, MapsDisagree, NotPlane, UnknownName
 from ..heading import wrap
 from ..robot.open_map import OPEN, OpenMap, named
 from ..robot.units import unit_of
-from ..robot.walk import DEFAULT_TOLERANCE, checked_tolerance
+from ..robot.walk import checked_tolerance
 from .opening import open_map
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def merge(
     at: tuple[str, str] | None = None,
     way: tuple[tuple[str, str], tuple[str, str]] | None = None,
     same_names: bool = False,
-    tolerance: float = DEFAULT_TOLERANCE,
+    tolerance: float | None = None,
 ) -> Merged:
     """Make one map of two that share a place.
 
@@ -111,7 +111,8 @@ def merge(
     same_names
         Whether a name that both have is one place.
     tolerance
-        Radians within which two headings may be of one exit: less than half the angle between any two exits of a place.
+        Radians within which two headings may be of one exit: less than half the angle between any two exits of a place. Left
+        out, the larger of those that the two walks declare.
 
     Raises
     ------
@@ -136,7 +137,7 @@ def merge(
     >>> whole.plane, whole.shared
     (PlaneMap(4 vertices, 4 edges, 2 faces), (('a', 's'), ('b', 't'), ('c', 'u'), ('d', 'v')))
     """
-    pair = _Pair(open_map(first), open_map(second), checked_tolerance(tolerance))
+    pair = _Pair(open_map(first), open_map(second), tolerance)
     given = pair.given(at, way, same_names=same_names)
     if not given:
         raise BadInput("the two maps have nothing given in common: give at=, way= or same_names=True, or ask overlaps()")
@@ -162,7 +163,7 @@ def overlaps(
     way: tuple[tuple[str, str], tuple[str, str]] | None = None,
     same_names: bool = False,
     least: int = 2,
-    tolerance: float = DEFAULT_TOLERANCE,
+    tolerance: float | None = None,
     trials: int = TRIALS,
 ) -> Overlaps:
     """Find every way in which two maps can overlap.
@@ -197,7 +198,7 @@ def overlaps(
     for what, value in (("least", least), ("trials", trials)):
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise BadInput(f"{what} is a whole number, 1 or more, not {quoted(value)}")
-    pair = _Pair(open_map(first), open_map(second), checked_tolerance(tolerance))
+    pair = _Pair(open_map(first), open_map(second), tolerance)
     pieces = [piece for piece in pair.pieces() if len(piece.place) >= least]
     pieces.sort(key=lambda piece: -len(piece.place))
     wholes: dict[tuple[int, frozenset[int]], Merged] = {}
@@ -242,8 +243,9 @@ def _disjoint(one: _Laid, other: _Laid) -> bool:
 class _Pair:
     """Two maps that may overlap."""
 
-    def __init__(self, a: OpenMap, b: OpenMap, tolerance: float) -> None:
-        self.a, self.b, self.tolerance = a, b, tolerance + 1e-9
+    def __init__(self, a: OpenMap, b: OpenMap, tolerance: float | None) -> None:
+        self.a, self.b = a, b
+        self.tolerance = (max(a.tolerance, b.tolerance) if tolerance is None else checked_tolerance(tolerance)) + 1e-9
         self.compass = a.compass and b.compass
 
     def given(
@@ -414,7 +416,7 @@ class _Pair:
             If the whole is none.
         """
         a, b = self.a, self.b
-        whole = OpenMap(compass=self.compass, complete=a.complete and b.complete)
+        whole = OpenMap(compass=self.compass, complete=a.complete and b.complete, tolerance=self.tolerance)
         held = {p: q for q, p in laid.place.items()}
         taken = {name for name in a.names if name is not None}
         ours: dict[int, int] = {}

@@ -112,7 +112,7 @@ def _of_quotient(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int
     """Return the open map of a quotient; exits are those of the first node of every place."""
     _, lead, place = np.unique(place, return_index=True, return_inverse=True)
     shift = shift - shift[lead[place]]
-    known = OpenMap(compass=tree.compass)
+    known = OpenMap(compass=tree.compass, tolerance=tree.tolerance)
     for w, n in enumerate(lead.tolist()):
         names = {tree.names[m] for m in np.flatnonzero(place == w)} - {None}
         known.see(tree.heading[n, : tree.degree[n]].tolist(), names.pop() if names else None)

@@ -16,6 +16,7 @@ from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from ..heading import TAU
+from .walk import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -40,6 +41,8 @@ class OpenMap:
         Whether headings of different places can be compared.
     complete
         Whether all exits of every place are listed.
+    tolerance
+        Radians within which two headings may be of one exit.
     names
         Of places, None for one that was not recognised.
     first
@@ -63,6 +66,7 @@ class OpenMap:
 
     compass: bool = True
     complete: bool = field(default=True, kw_only=True)
+    tolerance: float = field(default=DEFAULT_TOLERANCE, kw_only=True)
     names: list[str | None] = field(default_factory=list)
     first: list[int] = field(default_factory=lambda: [0])
     place: list[int] = field(default_factory=list, repr=False)
