@@ -43,7 +43,7 @@ AT_ONCE = 512
 SLICE = 0.1
 """Seconds of the solver between two looks at the search."""
 
-EQUAL = 5.0
+EQUAL = 3.0
 """Seconds that the solver may take as fast as the search does; afterwards it has a quarter of the time."""
 
 CLAUSE_SECONDS = 1e-6
