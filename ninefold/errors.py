@@ -26,6 +26,7 @@ __all__ = [
     "DifferentMaps",
     "EmptyBelief",
     "EmptySet",
+    "MapsDisagree",
     "MissingExtra",
     "NinefoldError",
     "NotACycle",
@@ -128,6 +129,10 @@ class EmptySet(BadInput):
 
 class DifferentMaps(BadInput):
     """Sets of two different maps in one question."""
+
+
+class MapsDisagree(BadInput):
+    """Two maps that cannot be laid over each other as they were said to be; the message names places and exits."""
 
 
 class WalkError(BadInput):

@@ -16,8 +16,20 @@ from math import radians
 from pathlib import Path
 
 from ninefold.io import samples
-from ninefold.layout import Drawing, TrueShapes, compass, side_by_side
-from ninefold.mapping import Follower, PlaneMap, Set, WalkHeader, build
+from ninefold.layout import Drawing, TrueShapes, compass, draw_alternatives, side_by_side
+from ninefold.mapping import (
+    Follower,
+    Heading,
+    PlaneMap,
+    Samples,
+    Set,
+    Visit,
+    Walk,
+    WalkHeader,
+    build,
+    estimate,
+    hypotheses,
+)
 from ninefold.mapping.robot.simulated import explore
 
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
@@ -73,6 +85,14 @@ def office() -> str:
     return compass(plane).to_svg(highlight=sets, width=560)
 
 
+def guess() -> str:
+    """The same world walked with a compass that errs by 10 degrees: the likeliest map, and what is undecided about it."""
+    walk = explore(samples.load("office").to_world(), seed=1, noise=radians(10), step=10.0).walk
+    found = estimate(walk)
+    doubts = [replace(one, text="; ".join([one.text, *map(str, found.more(one))])) for one in found.doubts]
+    return compass(found.best).to_svg(doubts=doubts, width=560)
+
+
 def lost() -> str:
     """Where a robot without a compass can be after its first look around, and one move later."""
     source = samples.load("helsinki_district")
@@ -90,7 +110,23 @@ def lost() -> str:
     return side_by_side(*sheets)
 
 
-PICTURES = {"district-beside.svg": district, "lost.svg": lost, "office.svg": office}
+def alike() -> str:
+    """All maps of a walk round two halls whose corners and junctions nobody recognises."""
+    exits = ((0, 90), (0, 90, 270), (90, 180, 270), (90, 180), (0, 90), (0, 90, 270), (0, 270), (180, 270), (90, 180, 270))
+    events: list[Samples | Visit] = []
+    for bearings, went in zip(exits, (None, 90, 0, 270, 180, 90, 90, 0, 270), strict=True):
+        events += [] if went is None else [Samples.of(Heading.from_bearing(went))]
+        events.append(Visit(None, tuple(map(Heading.from_bearing, bearings))))
+    return draw_alternatives(hypotheses(Walk(WalkHeader(), tuple(events))))
+
+
+PICTURES = {
+    "alike.svg": alike,
+    "district-beside.svg": district,
+    "guess.svg": guess,
+    "lost.svg": lost,
+    "office.svg": office,
+}
 
 
 def main(folder: Path) -> None:

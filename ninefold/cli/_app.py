@@ -4,7 +4,7 @@ import typer
 
 from ninefold import __version__
 
-from . import atlas, demo, explore, locate, networks, pictures, relate
+from . import atlas, claims, demo, explore, hypotheses, locate, networks, pictures, relate
 
 __all__ = ["app"]
 
@@ -19,6 +19,8 @@ _COMMANDS = (
     (pictures.draw, "draw", "Draw the map."),
     (pictures.verify, "verify", "Check a map and its relations on a drawing."),
     (locate.locate, "locate", "Where can a robot be whose walk began anywhere?"),
+    (hypotheses.hypotheses, "hypotheses", "Every plane map that explains a walk whose places look alike."),
+    (claims.claims, "claims", "Which loop closures of a pose graph cannot be right?"),
     (networks.check, "check", "Can declared relations all be true?"),
     (networks.prove, "prove", "Confirm a proof that they cannot."),
     (networks.infer, "infer", "Which relations are possible between two things?"),

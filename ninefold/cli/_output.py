@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
-__all__ = ["note", "notes", "one_line", "print_json", "progress"]
+__all__ = ["first_few", "note", "notes", "one_line", "print_json", "progress"]
 
 QUIET_SECONDS = 2.0
 """Work that takes longer than this shows that it goes on."""
@@ -35,19 +35,27 @@ def notes(messages: Iterable[str]) -> None:
         note(message)
 
 
+def first_few(lines: Iterable[str], most: int = 12) -> list[str]:
+    """Return the lines, or the first of them and how many more there are where nobody would read them all."""
+    every = list(lines)
+    if len(every) <= most + 1:
+        return every
+    return [*every[:most], f"... and {len(every) - most} more; --json lists them all"]
+
+
 def one_line(message: str) -> str:
     """Return a message without line breaks or control characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in message).split())
 
 
 @contextmanager
-def progress(step: str) -> Iterator[None]:
+def progress(step: str | Callable[[], str]) -> Iterator[None]:
     """Show on stderr, once the block has taken 2 s, what goes on and for how long; on a terminal in one line.
 
     Parameters
     ----------
     step
-        What is being done, such as ``"building the map"``.
+        What is being done, such as ``"building the map"``, or what tells it at that moment.
     """
     done = threading.Event()
     terminal = sys.stderr.isatty()
@@ -57,7 +65,8 @@ def progress(step: str) -> Iterator[None]:
         while not done.wait(pause):
             seconds = time.monotonic() - start
             end = "\r" if terminal else "\n"
-            print(f"ninefold: {step} ... {seconds:.0f} s", end=end, file=sys.stderr, flush=True)
+            doing = step if isinstance(step, str) else step()
+            print(f"ninefold: {doing} ... {seconds:.0f} s", end=end, file=sys.stderr, flush=True)
             pause = 0.5 if terminal else min(2 * pause, 30.0)
         if terminal and time.monotonic() - start >= QUIET_SECONDS:
             print("\x1b[2K\r", end="", file=sys.stderr, flush=True)

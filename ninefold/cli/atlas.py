@@ -9,11 +9,12 @@ import typer
 from ninefold._wording import counted
 
 from ._options import AsJson, AtlasPath, DropCrossing, Force, SourceText
-from ._output import note, notes, print_json, progress
+from ._output import first_few, note, notes, print_json, progress
+from .estimating import doubts_as_json, in_radians, map_noisy_walk
 from .follow import follow_walk, read_whole_walk
 
 if TYPE_CHECKING:
-    from ninefold.io import Atlas
+    from ninefold.io import Atlas, Guess
     from ninefold.layout import Rigidity
     from ninefold.mapping import PlaneMap
 
@@ -34,6 +35,21 @@ def map_source(
         float | None,
         typer.Option(help="For a walk: headings that differ by less, in radians, count as one. Left out, the log says."),
     ] = None,
+    sigma: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG",
+            help="For a walk whose headings err: their standard deviation in degrees. Left out, the log says; without "
+            "either, headings are taken as they are.",
+        ),
+    ] = None,
+    drift: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", help="With sigma: standard deviation of a bias common to all headings of one visit."),
+    ] = None,
+    best: Annotated[
+        bool, typer.Option("--best", help="Where the map is not certain, keep the likeliest, marked as a guess.")
+    ] = False,
     drop_crossing: DropCrossing = False,
     follow: Annotated[
         bool,
@@ -47,7 +63,8 @@ def map_source(
 ) -> int:
     """Build a map from a walk log, or from lines with geometry whose coordinates are then dropped, and keep it.
 
-    SOURCE - is a walk on standard input.
+    SOURCE - is a walk on standard input. Where its headings err, as --sigma or the log says, only a map that is certain is
+    kept; else the answer is what is in doubt, and the exit code 1.
     """
     from ninefold._files import refuse_existing
     from ninefold.errors import BadInput
@@ -61,6 +78,7 @@ def map_source(
         raise BadInput("--drop-crossing is for sources with geometry, and a walk has none")
     if kind != "walk" and tolerance is not None:
         raise BadInput("--tolerance is for walks; geometry needs none")
+    noise = _declared_noise(kind, sigma, drift, best=best, exact=follow or tolerance is not None)
     if not resume:
         refuse_existing(out, force=force)
     if out.exists() and source != "-" and not source.startswith("sample:") and out.samefile(source):
@@ -68,14 +86,14 @@ def map_source(
     doubts: list[str] = []
     if follow:
         atlas, doubts = follow_walk(out, tolerance, resume=resume, force=force)
-    elif source == "-":
-        atlas, doubts = read_whole_walk(out, tolerance, force=force)
+    elif kind == "walk":
+        found = _from_walk(source, out, tolerance, noise, best=best, force=force, as_json=as_json)
+        if isinstance(found, int):
+            return found
+        atlas, doubts = found
     else:
         with progress(f"mapping {source}"):
-            if kind == "walk":
-                atlas, doubts = _from_walk(source, out, tolerance, force=force)
-            else:
-                atlas = _from_source(source, out, drop_crossing=drop_crossing, force=force)
+            atlas = _from_source(source, out, drop_crossing=drop_crossing, force=force)
     with atlas:
         plane, warnings, n_events = atlas.plane, (*doubts, *atlas.warnings), atlas.n_events
     if kind == "walk" and plane.heading is not None and plane.n_edges <= TESTED_UP_TO:
@@ -107,15 +125,68 @@ def _check_following(source: str, out: Path, *, follow: bool, resume: bool, forc
         raise BadInput(f"{out}: exists already; --resume goes on with its walk, --force replaces it")
 
 
-def _from_walk(source: str, out: Path, tolerance: float | None, *, force: bool) -> tuple["Atlas", list[str]]:
+def _declared_noise(
+    kind: str, sigma: float | None, drift: float | None, *, best: bool, exact: bool
+) -> tuple[float | None, float | None]:
+    """Return --sigma and --drift in radians."""
+    from ninefold.errors import BadInput
+
+    given = [
+        name for name, on in (("--sigma", sigma), ("--drift", drift), ("--best", best)) if on is not None and on is not False
+    ]
+    if given and kind != "walk":
+        raise BadInput(f"{given[0]} is for walks; geometry has no headings that err")
+    if given and exact:
+        raise BadInput(
+            f"{given[0]} is for headings that err, and --tolerance and --follow take them as they are; give one of them"
+        )
+    return in_radians(sigma, "--sigma", 60), in_radians(drift, "--drift", 180, nought=True)
+
+
+def _from_walk(
+    source: str,
+    out: Path,
+    tolerance: float | None,
+    noise: tuple[float | None, float | None],
+    *,
+    best: bool,
+    force: bool,
+    as_json: bool,
+) -> "tuple[Atlas, list[str]] | int":
+    """Map a walk: exactly, or where its headings are declared to err, as far as it is certain; then return the exit code."""
     from ninefold.errors import BadInput
     from ninefold.io import Atlas, Provenance, read_walk
     from ninefold.io.walks.heading_units import doubts
     from ninefold.io.walks.mapped import by_line
+    from ninefold.io.walks.streams import STANDARD_INPUT
 
-    walk, origin = read_walk(source, tolerance=tolerance), Provenance.of_file(source, "walk")
+    sigma, drift = noise
+    content = None
+    if source == "-":
+        walk, content = read_whole_walk(tolerance, sigma)
+        source = STANDARD_INPUT
+        origin = Provenance.of(source, "walk")
+    else:
+        with progress(f"reading {source}"):
+            walk, origin = read_walk(source, tolerance=tolerance, sigma=sigma), Provenance.of_file(source, "walk")
+    if walk.header.sigma is None and (drift is not None or best):
+        raise BadInput(f"{source}: it does not say how much its headings err; give --sigma DEG, their standard deviation")
     try:
-        with by_line(source):
+        if walk.header.sigma is not None and tolerance is None:
+            return map_noisy_walk(
+                walk,
+                out,
+                source=source,
+                located=by_line(source, content=content),
+                provenance=origin,
+                sigma=sigma,
+                drift=drift,
+                best=best,
+                doubted=doubts(walk),
+                force=force,
+                as_json=as_json,
+            )
+        with progress(f"mapping {source}"), by_line(source, content=content):
             return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
     except BadInput as error:
         if error.event is None:
@@ -159,12 +230,14 @@ def info(
             "dead_ends": int((plane.degree == 1).sum()),
             **_measured(plane),
             "origin": found.origin,
+            "alike": found.origin == "map" and found.n_events > 0 and found.walk.header.sigma is None,
             "events": found.n_events,
             "checks": _checks(plane),
             "health": None if plane.heading is None else health(plane).counts,
             "fixed": None,
             "names": found.kinds,
             "statements": len(found.statements),
+            "guess": _guess(found.guess),
             "provenance": [
                 {"source": p.source, "kind": p.kind, "sha256": p.sha256, "tool": p.tool, "made": p.made}
                 for p in found.provenance
@@ -211,6 +284,21 @@ def name(
     else:
         print(f"{set_name}: {item!r}, stored in {atlas}")
     return 0
+
+
+def _guess(guess: "Guess | None") -> dict[str, Any] | None:
+    """Return what is in doubt about the map as a JSON value; None for one that is no guess."""
+    if guess is None:
+        return None
+    from math import degrees
+
+    return {
+        "count": guess.count,
+        "bits": guess.bits,
+        "sigma": degrees(guess.sigma),
+        "drift": degrees(guess.drift),
+        "doubts": doubts_as_json(guess.doubts, guess.more),
+    }
 
 
 def _counts(plane: "PlaneMap") -> dict[str, int]:
@@ -298,8 +386,10 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
         print(f"health       {health(plane)}")
     if facts["fixed"] is not None:
         print(f"headings fix {_fixed_in_words({**facts['fixed'], 'all': facts['edges']})}")
-    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" else ""
-    print(f"made from    a {facts['origin']}{events}")
+    events = f", {counted(facts['events'], 'event')}" if facts["origin"] == "walk" or facts["events"] else ""
+    estimated = facts["origin"] == "map" and facts["events"]
+    walk = "walk whose places look alike" if facts["alike"] else "walk whose headings err"
+    print(f"made from    a {walk if estimated else facts['origin']}{events}")
     for record in facts["provenance"]:
         print(f"source       {record['source']} ({record['kind']}, {record['tool']}, {record['made']})")
     named = facts["names"]
@@ -308,5 +398,5 @@ def _show(facts: dict[str, Any], plane: "PlaneMap") -> None:
     print(f"named sets   {kinds}: {shown}" if named else "named sets   none")
     if facts["statements"]:
         print(f"statements   {facts['statements']}")
-    for warning in facts["warnings"]:
+    for warning in first_few(facts["warnings"]):
         print(f"note         {warning}")

@@ -40,12 +40,19 @@ def explore(
     ] = 0.0,
     tour: Annotated[
         str,
-        typer.Option(metavar="depth-first|covering", help="Where to go next: back the way it came, or the nearest new way."),
+        typer.Option(
+            metavar="depth-first|covering|wall",
+            help="Where to go next: back the way it came, to the nearest new way, or on along the wall on the right.",
+        ),
     ] = "depth-first",
     tours: Annotated[int, typer.Option(min=1, help="How often to walk every way anew.")] = 1,
     step: Annotated[float, typer.Option(help="Metres between two samples of the heading.")] = 1.0,
     exits: Annotated[
         bool, typer.Option("--exits/--no-exits", help="Whether the log tells the exits seen at every place.")
+    ] = True,
+    places: Annotated[
+        bool,
+        typer.Option("--places/--no-places", help="Whether the log names places and ways, or the robot recognises none."),
     ] = True,
     ordered_exits: Annotated[
         bool,
@@ -87,6 +94,7 @@ def explore(
             step=step,
             exits=exits,
             ordered_exits=ordered_exits,
+            places=places,
             metres=metres,
             tolerance=tolerance,
         )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ninefold.io import Atlas
     from ninefold.io.atlas.feed import Feed
-    from ninefold.mapping.robot.walk import Event
+    from ninefold.mapping.robot.walk import Event, Walk
 
 __all__ = ["follow_walk", "read_whole_walk"]
 
@@ -25,26 +25,15 @@ LONGEST_PAUSE = 30.0
 """Seconds after which a place reached is worth a line again."""
 
 
-def read_whole_walk(out: Path, tolerance: float | None, *, force: bool) -> tuple[Atlas, list[str]]:
-    """Read a walk from standard input to its end and make an atlas of it, as of a file; with doubts about its header."""
+def read_whole_walk(tolerance: float | None, sigma: float | None) -> tuple[Walk, bytes]:
+    """Read a walk from standard input to its end; return it, and what was read."""
     from io import BytesIO
 
-    from ninefold.errors import BadInput
-    from ninefold.io import Atlas, Provenance
-    from ninefold.io.walks.heading_units import doubts
-    from ninefold.io.walks.mapped import by_line
     from ninefold.io.walks.streams import STANDARD_INPUT, read_stream
 
     with progress(f"reading {STANDARD_INPUT}"):
         content = b"".join(_standard_input())
-    walk, origin = read_stream(BytesIO(content), tolerance=tolerance), Provenance.of(STANDARD_INPUT, "walk")
-    try:
-        with by_line(STANDARD_INPUT, content=content), progress("mapping"):
-            return Atlas.from_walk(walk, out, provenance=origin, force=force), doubts(walk)
-    except BadInput as error:
-        if error.event is None:
-            raise
-        raise BadInput("; ".join([str(error), *doubts(walk)])) from None
+    return read_stream(BytesIO(content), tolerance=tolerance, sigma=sigma), content
 
 
 def follow_walk(out: Path, tolerance: float | None, *, resume: bool, force: bool) -> tuple[Atlas, list[str]]:

@@ -73,6 +73,7 @@ def draw(
     with progress(f"reading {atlas}"), Atlas.open(atlas, writable=False) as found:
         plane = found.plane
         sets = {text: found.parse(text) for text in highlight or []}
+        guess = found.guess
     with progress("drawing"):
         from ninefold import layout as layouts
         from ninefold import mapping
@@ -82,10 +83,16 @@ def draw(
         drawing = layouts.compass(plane, curved=True) if curved else layouts.draw(plane, layout=layout)
         heading = title if title is not None else atlas.stem
         svg = drawing.to_svg(
-            highlight=sets or None, title=heading, theme=theme, rigidity=measured or False, health=closing or False
+            highlight=sets or None,
+            title=heading,
+            theme=theme,
+            rigidity=measured or False,
+            health=closing or False,
+            doubts=guess.told if guess else (),
         )
         write_text(out, svg, force=force)
-    said = (*drawing.notes, *(measured.warnings if measured else ()))
+    doubted = guess.warnings[:1] if guess else ()
+    said = (*doubted, *drawing.notes, *(measured.warnings if measured else ()))
     notes(said)
     if as_json:
         facts = {"fixed": measured.counts} if measured else {"health": closing.counts} if closing else {}

@@ -2,7 +2,8 @@
 
 **In.** `read_source` gives a `Source`: vertices, polylines and notes, with shapely geometry at hand; GeoJSON lines in the
 base install, and the bundled `samples` (`ninefold.io.sources`). `read_walk` reads what a robot sensed (`ninefold.io.walks`),
-`read_network` a set of declared relations (`ninefold.io.networks`). `read_map` takes any source, walk or atlas and gives the
+`read_network` a set of declared relations (`ninefold.io.networks`), `read_pose_graph` odometry and loop closures, which
+`judge_closures` judges (`ninefold.io.graphs`). `read_map` takes any source, walk or atlas and gives the
 plane map (`ninefold.io.maps`); what a file is, one table tells (`ninefold.io.formats`).
 
 **Kept.** `Atlas` is one SQLite file with a walk, its map, named sets, declared relations and where all that came from
@@ -22,7 +23,10 @@ from ninefold._lazy import attach
 
 if TYPE_CHECKING:
     from .atlas.atlas import Atlas
+    from .atlas.guess import Guess
     from .atlas.records import Provenance, Statement
+    from .graphs.closures import judge_closures
+    from .graphs.g2o import read_pose_graph
     from .maps import read_map
     from .networks.network_file import read_network, write_network
     from .sources import samples
@@ -32,12 +36,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Atlas",
+    "Guess",
     "Provenance",
     "Source",
     "Statement",
     "iter_events",
+    "judge_closures",
     "read_map",
     "read_network",
+    "read_pose_graph",
     "read_source",
     "read_walk",
     "samples",
@@ -49,7 +56,10 @@ __getattr__, __dir__ = attach(
     __name__,
     {
         "atlas.atlas": ("Atlas",),
+        "atlas.guess": ("Guess",),
         "atlas.records": ("Provenance", "Statement"),
+        "graphs.closures": ("judge_closures",),
+        "graphs.g2o": ("read_pose_graph",),
         "maps": ("read_map",),
         "networks.network_file": ("read_network", "write_network"),
         "sources.reading": ("read_source",),

@@ -9,6 +9,7 @@ a ``map``    `ninefold.io.read_map`: an atlas, a walk log, lines with geometry
 a ``walk``   `ninefold.io.read_walk`
 a ``source`` `ninefold.io.read_source`: lines with geometry
 ``network``  `ninefold.io.read_network`: declared relations
+``graph``    `ninefold.io.read_pose_graph`: odometry and loop closures
 ===========  =========================================================================================================
 """
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "Format", "Kind", "foreign", "named_format", "recognise", "told_by", "wrong_kind"]
 
-Kind = Literal["map", "walk", "source", "network", "atlas"]
+Kind = Literal["map", "walk", "source", "network", "graph", "atlas"]
 """What a file can be read as."""
 
 _WANTED: dict[Kind, str] = {
@@ -38,6 +39,7 @@ _WANTED: dict[Kind, str] = {
     "walk": "a walk log",
     "source": "lines with geometry (.geojson, or sample:NAME)",
     "network": "a relation network (.csp, .csv or .json)",
+    "graph": "a pose graph (.g2o)",
     "atlas": "an atlas",
 }
 _HEAD = 4096
@@ -107,6 +109,13 @@ def _is_network_table(head: bytes) -> bool:
     return b"relations" in first and re.search(b"[,;\t]", first) is not None and not first.startswith(b"{")
 
 
+_G2O = re.compile(rb"(?:(?:FIX|#)[^\n]*\n|[ \t\r]*\n)*[ \t]*(?:VERTEX|EDGE|PARAMS)_[A-Z]+[A-Z0-9_:]*[ \t]")
+
+
+def _is_pose_graph(head: bytes) -> bool:
+    return _G2O.match(head) is not None
+
+
 def _is_csp(head: bytes) -> bool:
     lines = (line.strip() for line in head.split(b"\n"))
     return _CSP.match(next((line for line in lines if line and not line.startswith(b"#")), b"")) is not None
@@ -141,6 +150,14 @@ FORMATS = (
         _is_geojson,
         ("source", "map"),
         _TO_ATLAS,
+    ),
+    Format(
+        "g2o",
+        "a pose graph",
+        (".g2o",),
+        _is_pose_graph,
+        ("graph",),
+        "`ninefold claims FILE` judges its loop closures (in Python: read_pose_graph)",
     ),
     Format(
         "relations",

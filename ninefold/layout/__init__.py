@@ -7,6 +7,8 @@ the drawing's notes say so. All keep the rotation system, the outer face and the
 layout by name. Loops and parallel edges get bends (`subdivide`). What compass and relaxed drawings share is in
 `ninefold.layout.shaping`.
 
+**Several maps of one walk.** `draw_alternatives` shows the maps that explain a walk side by side, and marks what differs.
+
 **Measured or evened out.** `rigidity` says which parts of a map have their shape from headings, and which headings the
 rest contradicts. `heading_errors` and `misplacement` say how much a drawing looks like the place.
 
@@ -30,6 +32,7 @@ from typing import TYPE_CHECKING
 from ninefold._lazy import attach
 
 if TYPE_CHECKING:
+    from .alternatives import draw_alternatives
     from .bearing_rigidity import Rigidity, rigidity
     from .drawing import Drawing
     from .layouts import LAYOUTS, draw
@@ -56,6 +59,7 @@ __all__ = [
     "TrueShapes",
     "compass",
     "draw",
+    "draw_alternatives",
     "drawing_problems",
     "heading_errors",
     "misplacement",
@@ -76,6 +80,7 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "alternatives": ("draw_alternatives",),
         "bearing_rigidity": ("Rigidity", "rigidity"),
         "drawing": ("Drawing",),
         "layouts": ("LAYOUTS", "draw"),

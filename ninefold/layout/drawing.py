@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import Health, PlaneMap, Set
+    from ninefold.mapping import Doubt, Health, PlaneMap, Set
 
     from .bearing_rigidity import Rigidity
+    from .difference_marks import Differences
 
 __all__ = ["Drawing"]
 
@@ -210,6 +211,8 @@ class Drawing(Immutable):
         rigidity: bool | Rigidity = False,
         health: bool | Health = False,
         belief: ArrayLike | None = None,
+        doubts: Iterable[Doubt] = (),
+        differences: Differences | None = None,
     ) -> str:
         """Return the drawing as an SVG document; see `ninefold.layout.svg`.
 
@@ -235,12 +238,19 @@ class Drawing(Immutable):
         belief
             (V,) how likely a robot is at each place, such as ``Localizer.probabilities``: the likely places are marked, and
             the likeliest named.
+        doubts
+            Of an estimate whose likeliest map this is: the places where something is undecided get numbered rings, and the
+            sentences stand below.
+        differences
+            How this map differs from another of the same walk; see `draw_alternatives`, which shows several.
 
         Raises
         ------
         BadInput, DifferentMaps
             For an unknown theme, a width that is not positive, too many highlighted sets, a set of another map,
-            `rigidity` or `health` for a map without headings, or a belief that is none.
+            `rigidity` or `health` for a map without headings, a belief that is none, or what is no doubt.
+        UnknownName
+            For doubts about a place that the map does not have.
         """
         from .svg import render
 
@@ -254,6 +264,8 @@ class Drawing(Immutable):
             rigidity=rigidity,
             health=health,
             belief=belief,
+            doubts=doubts,
+            differences=differences,
         )
 
     def save(self, path: str | Path, **options: Any) -> None:

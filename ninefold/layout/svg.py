@@ -8,7 +8,8 @@ triangle; the picture shears it to an equilateral one, which keeps straight line
 By request the edges are coloured by what the headings fix (`leg_classes`): those that nothing measures dashed, those that
 the rest contradicts broad and on top; or by how well headings and turns agree (`health_scale`), the worst broadest and on
 top. Highlighted lines and outlines then lie below the edges, and reach out on both sides. By request too, the places where a
-robot can be are marked (`beliefs`), larger and stronger the likelier they are.
+robot can be are marked (`beliefs`), larger and stronger the likelier they are, and what is undecided about a map that was
+estimated, with sentences below (`doubt_marks`), or how it differs from another map of the same walk (`difference_marks`).
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from ninefold.errors import BadInput
 from ninefold.mapping import Line, Point, Region
 
 from .beliefs import belief_of
+from .difference_marks import DIFFERENCE_COLOURS, difference_mark
+from .doubt_marks import DoubtMark, doubt_marks, doubt_sentences, doubt_words, ring
 from .health_scale import health_colouring, health_of, health_scale
 from .labels import place_labels, text_width
 from .leg_classes import rigidity_colouring, rigidity_of
@@ -36,10 +39,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ninefold.mapping import Health, Set
+    from ninefold.mapping import Doubt, Health, Set
 
     from .bearing_rigidity import Rigidity
     from .beliefs import Belief
+    from .difference_marks import Differences
     from .drawing import Drawing
     from .leg_classes import LegColouring
 
@@ -70,6 +74,8 @@ def render(
     rigidity: bool | Rigidity = False,
     health: bool | Health = False,
     belief: ArrayLike | None = None,
+    doubts: Iterable[Doubt] = (),
+    differences: Differences | None = None,
 ) -> str:
     """Return the SVG text; see `Drawing.to_svg` for the parameters."""
     if theme not in THEMES:
@@ -79,33 +85,48 @@ def render(
     sets = named_sets(drawing, highlight)
     colouring = leg_colouring(drawing, rigidity=rigidity, health=health)
     seen = belief_of(drawing.plane, belief)
-    page = _Page(drawing, width, title)
+    said = tuple(doubts)
+    marks = doubt_marks(drawing.plane, said)
+    page = _Page(drawing, width, title, None if differences is None else differences.n_places)
     if colouring is not None:
         page.band = 5.5 + _leg_width("fixed0", page.stroke)
     shown = drawing.plane.n_vertices <= LABELS_UP_TO if labels is None else labels
     body = [
-        _defs(theme, len(sets), legs="" if colouring is None else colouring.told, belief=seen is not None),
+        _defs(
+            theme,
+            len(sets) if differences is None else max(len(sets), 1 + max(DIFFERENCE_COLOURS.values())),
+            legs="" if colouring is None else colouring.told,
+            belief=seen is not None,
+            doubts=bool(marks),
+        ),
         f'<rect class="paper" width="{width}" height="{{height}}" rx="6"/>',
         *_heading(title),
         *_ground(page),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _region(page, k, x)],
-        *(_edges(page) if colouring is None else []),
+        *(_edges(page, differences) if colouring is None else []),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Region) for part in _outline(page, k, x)],
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Line) for part in _line(page, k, x)],
         *([] if colouring is None else _classed_edges(page, colouring)),
-        *_vertices(page),
+        *_vertices(page, differences),
         *[part for k, (_, x) in enumerate(sets) if isinstance(x, Point) for part in _point(page, k, x)],
         *([] if seen is None else _spots(page, seen)),
+        *_doubted(page, marks),
+        *([] if differences is None else _differing(page, differences)),
     ]
-    if shown or (seen is not None and seen.names):
+    if shown or differences is not None or (seen is not None and seen.names):
         names: dict[int, str] = dict(enumerate(drawing.plane.vertex_names)) if shown else {}
         least = 7.0 if any(isinstance(x, Point) for _, x in sets) else page.dot
-        radii: dict[int, float] = {}
+        radii: dict[int, float] = {mark.vertex: _ring_radius(page) for mark in marks}
         if seen is not None:
             names |= {spot.vertex: seen.text(spot) for spot in seen.spots} if shown else seen.names
-            radii = {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
-        body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
-    legend, height = _legend(page, sets, colouring, seen)
+            radii |= {spot.vertex: spot.radius + page.dot + 1.0 for spot in seen.spots}
+        if differences is not None:
+            every = differences.n_places <= LABELS_UP_TO
+            names = {v: text for v, text in differences.names.items() if every or v in differences.marked}
+            radii |= dict.fromkeys(differences.marked, _ring_radius(page) + 3.0)
+        if names:
+            body += _names(page, names, np.array([max(page.dot, least, radii.get(v, 0.0)) for v in names]))
+    legend, height = _legend(page, sets, colouring, seen, marks, doubt_sentences(said), differences)
     body += legend
     name = _escaped(title or repr(drawing.plane))
     text = "\n".join(body).replace("{height}", f"{height:.0f}", 1)
@@ -163,11 +184,12 @@ def named_sets(drawing: Drawing, highlight: Mapping[str, Set] | Iterable[Set] | 
 class _Page:
     """The frame of the picture and the way from map coordinates to pixels."""
 
-    def __init__(self, drawing: Drawing, width: int, title: str | None) -> None:
+    def __init__(self, drawing: Drawing, width: int, title: str | None, n_shown: int | None = None) -> None:
+        """Make room for the first `n_shown` vertices and what joins them; left out, for all."""
         self.drawing = drawing
         self.width = width
         self.top = 54.0 if title else 0.0
-        corners = np.concatenate([drawing.points, drawing.bends]).astype(np.float64)
+        corners = _corners(drawing, n_shown).astype(np.float64)
         self._shear = np.array([[1.0, 0.0], [0.5, 0.75**0.5]]) if drawing.layout == "schnyder" else np.eye(2)
         corners = corners @ self._shear
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -198,6 +220,14 @@ class _Page:
         return "".join(self.path(ring, closed=True) for part in region_rings(self.drawing, region) for ring in part)
 
 
+def _corners(drawing: Drawing, n_shown: int | None) -> NDArray[Any]:
+    """Return the points that the picture has to hold, (N, 2)."""
+    if n_shown is None:
+        return np.concatenate([drawing.points, drawing.bends])
+    between = (drawing.plane.tail.reshape(-1, 2) < n_shown).all(axis=1)
+    return np.concatenate([drawing.points[:n_shown], drawing.bends[np.repeat(between, np.diff(drawing.bend_start))]])
+
+
 def _escaped(text: str) -> str:
     """Return text that is safe in XML content and attributes; characters XML cannot hold become U+FFFD."""
     kept = _UNFIT.sub("\ufffd", text)
@@ -206,7 +236,7 @@ def _escaped(text: str) -> str:
     return kept
 
 
-def _defs(theme: str, used: int, *, legs: str, belief: bool) -> str:
+def _defs(theme: str, used: int, *, legs: str, belief: bool, doubts: bool) -> str:
     hatches = "".join(
         f'<pattern id="ninefold-hatch-{k}" width="7" height="7" patternUnits="userSpaceOnUse" '
         f'patternTransform="rotate({_HATCH[k]})">'
@@ -215,7 +245,8 @@ def _defs(theme: str, used: int, *, legs: str, belief: bool) -> str:
         if _HATCH[k] is not None
     )
     return (
-        f"<style>{style_sheet(theme, used, legs=legs, belief=belief)}</style>{f'<defs>{hatches}</defs>' if hatches else ''}"
+        f"<style>{style_sheet(theme, used, legs=legs, belief=belief, doubts=doubts)}</style>"
+        f"{f'<defs>{hatches}</defs>' if hatches else ''}"
     )
 
 
@@ -261,15 +292,35 @@ def _faded(page: _Page) -> str:
     return ' stroke-opacity="0.45"' if page.band else ""
 
 
-def _edges(page: _Page) -> list[str]:
+def _edges(page: _Page, differences: Differences | None) -> list[str]:
     plane = page.drawing.plane
     real = np.flatnonzero(~plane.tether).tolist()
+    ends: list[str] = []
+    if differences is not None:
+        unknown = plane.tail.reshape(-1, 2).max(axis=1) >= differences.n_places
+        ends = _ends(page, np.flatnonzero(unknown).tolist(), differences.n_places)
+        real = np.flatnonzero(~plane.tether & ~unknown).tolist()
     shape = f'class="edge" fill="none" stroke-width="{page.stroke:.2f}" stroke-linecap="round" stroke-linejoin="round"'
     lines = [page.path(page.drawing.path(e)) for e in real]
     if len(real) > TIPS_UP_TO:
         return [f'<path {shape} d="{"".join(lines)}"/>']
     tips = (f'<path d="{d}"><title>{_escaped(plane.edge_names[e])}</title></path>' for e, d in zip(real, lines, strict=True))
-    return [f"<g {shape}>{''.join(tips)}</g>"] if lines else []
+    return [*ends, *([f"<g {shape}>{''.join(tips)}</g>"] if lines else [])]
+
+
+def _ends(page: _Page, edges: list[int], n_places: int) -> list[str]:
+    """Return ways that nobody walked: from each place a short dashed way."""
+    steps = []
+    for e in edges:
+        line = page.place(page.drawing.path(e))
+        if page.drawing.plane.tail[2 * e] >= n_places:
+            line = line[::-1]
+        along = line[1] - line[0]
+        long = float(np.hypot(*along))
+        end = line[0] + along / max(long, 1e-9) * min(max(long, page.dot + 7.0), page.dot + 17.0)
+        steps.append("M{:.2f},{:.2f} {:.2f},{:.2f}".format(*line[0], *end))
+    look = f'stroke-width="{page.stroke:.2f}" stroke-dasharray="3 2.6"'
+    return [f'<path class="edge" fill="none" {look} d="{"".join(steps)}"/>'] if steps else []
 
 
 def _classed_edges(page: _Page, colouring: LegColouring) -> list[str]:
@@ -307,9 +358,11 @@ def _leg_look(name: str, stroke: float) -> str:
     return f'stroke-width="{_leg_width(name, stroke):.2f}" stroke-dasharray="{dash}" stroke-linejoin="round"'
 
 
-def _vertices(page: _Page) -> list[str]:
+def _vertices(page: _Page, differences: Differences | None) -> list[str]:
     plane = page.drawing.plane
     at = page.place(page.drawing.points).tolist()
+    if differences is not None:
+        at = at[: differences.n_places]
     if plane.n_edges > TIPS_UP_TO:
         return []
     rim = min(1.2, page.dot / 3)
@@ -327,6 +380,31 @@ def _point(page: _Page, k: int, x: Point) -> list[str]:
         f'<circle class="halo" fill="none" cx="{cx:.2f}" cy="{cy:.2f}" r="{r + 1.6:.2f}" stroke-width="1.8"/>',
         f'<circle class="f{k}" cx="{cx:.2f}" cy="{cy:.2f}" r="{r:.2f}"><title>{_escaped(x.name)}</title></circle>',
     ]
+
+
+def _ring_radius(page: _Page) -> float:
+    return max(7.0, page.dot + 3.0)
+
+
+def _doubted(page: _Page, marks: tuple[DoubtMark, ...]) -> list[str]:
+    """Return a numbered ring for every place where something is undecided."""
+    at = page.place(page.drawing.points).tolist()
+    radius = _ring_radius(page)
+    rings, numbers = [], []
+    for mark in marks:
+        x, y = at[mark.vertex]
+        number = ",".join(map(str, mark.numbers))
+        tip = _escaped("; ".join(mark.words))
+        rings.append(f"<g><title>{tip}</title>{ring(mark.kind, x, y, radius)}</g>")
+        numbers.append(f'<text x="{x + radius + 1:.1f}" y="{y - radius + 2:.1f}">{number}</text>')
+    look = 'font-size="11.5" font-weight="600" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    return [*rings, f'<g class="name" {look}>{"".join(numbers)}</g>'] if marks else []
+
+
+def _differing(page: _Page, differences: Differences) -> list[str]:
+    """Return a mark for every place that is not one of the best map."""
+    at = page.place(page.drawing.points).tolist()
+    return [difference_mark(kind, at[v][0], at[v][1], _ring_radius(page)) for v, kind in differences.marked.items()]
 
 
 def _spots(page: _Page, seen: Belief) -> list[str]:
@@ -363,7 +441,13 @@ def _names(page: _Page, named: Mapping[int, str], radii: NDArray[np.float64]) ->
 
 
 def _legend(
-    page: _Page, sets: list[tuple[str, Set]], colouring: LegColouring | None, seen: Belief | None
+    page: _Page,
+    sets: list[tuple[str, Set]],
+    colouring: LegColouring | None,
+    seen: Belief | None,
+    marks: tuple[DoubtMark, ...],
+    doubted: list[str],
+    differences: Differences | None,
 ) -> tuple[list[str], float]:
     """The legend and the caption below the map; and the height of the whole picture."""
     parts, x, y = [], _PAD, page.bottom + 16.0
@@ -373,6 +457,10 @@ def _legend(
     if colouring is not None and colouring.told == "rigidity":
         entries += [(partial(_leg_swatch, kind.name), kind.words) for kind in colouring.classes]
     entries += [] if seen is None else [(partial(_spot_swatch, step), words) for step, words in seen.entries]
+    entries += [(partial(_ring_swatch, kind), words) for kind, words in doubt_words(marks)]
+    entries += (
+        [] if differences is None else [(partial(_differing_swatch, kind), words) for kind, words in differences.entries]
+    )
     for swatch, text in entries:
         wide = 30 + text_width(text, 13) + 22
         if x > _PAD and x + wide > page.width - _PAD:
@@ -387,6 +475,8 @@ def _legend(
         y += 70
     layout = page.drawing.layout
     caption = [_counts(page.drawing), "as on the ground" if layout == "ground" else f"{layout} layout", *page.drawing.notes]
+    if differences is not None:
+        caption = [differences.caption, *page.drawing.notes]
     if colouring is not None:
         caption.append(colouring.caption)
     if seen is not None:
@@ -394,7 +484,19 @@ def _legend(
     for line in _wrapped("; ".join(caption), (page.width - 2 * _PAD) / (12 * 0.58)):
         parts.append(f'<text class="faint" x="{_PAD:g}" y="{y + 4:.1f}" font-size="12">{_escaped(line)}</text>')
         y += 16
+    for sentence in doubted:
+        for line in _wrapped(sentence, (page.width - 2 * _PAD) / (12 * 0.58)):
+            parts.append(f'<text class="ink" x="{_PAD:g}" y="{y + 6:.1f}" font-size="12">{_escaped(line)}</text>')
+            y += 16
     return parts, y + 6
+
+
+def _ring_swatch(kind: str, x: float, y: float) -> str:
+    return ring(kind, x + 11, y, 7.0)
+
+
+def _differing_swatch(kind: str, x: float, y: float) -> str:
+    return difference_mark(kind, x + 11, y, 7.0)
 
 
 def _leg_swatch(name: str, x: float, y: float) -> str:

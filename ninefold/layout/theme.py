@@ -40,7 +40,9 @@ LIGHT = {"paper": "#FFFFFF", "land": "#F3F1EA", "edge": "#6B6F76", "ink": "#1E22
 DARK = {"paper": "#15181C", "land": "#23282E", "edge": "#9AA1AA", "ink": "#ECEFF2", "faint": "#9AA1AA"}
 
 
-def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, mode: str, *, belief: bool) -> str:
+def _rules(
+    scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, mode: str, *, belief: bool, doubts: bool
+) -> str:
     rules = [
         f".paper{{fill:{base['paper']}}}",
         f".land{{fill:{base['land']}}}",
@@ -62,22 +64,24 @@ def _rules(scope: str, base: dict[str, str], roles: tuple[str, ...], legs: str, 
     if belief:
         rules += [f".spot{{stroke:{base['paper']}}}"]
         rules += [f".belief{k}{{fill:{colour}}}" for k, colour in enumerate(BELIEF[mode])]
+    if doubts:
+        rules.append(f".doubt{{stroke:{base['ink']}}}")
     return "".join(f"{scope} {rule}" for rule in rules)
 
 
-def style_sheet(theme: str, used: int, *, legs: str = "", belief: bool = False) -> str:
+def style_sheet(theme: str, used: int, *, legs: str = "", belief: bool = False, doubts: bool = False) -> str:
     """Return the CSS rules for a theme with `used` role colours; ``"auto"`` follows the reader's preference.
 
     With ``legs="rigidity"`` there are rules for what the headings fix: classes ``fixed0`` to ``fixed3``, ``evened``,
     ``contradicted``; with ``legs="health"`` for closing residuals: ``closing0`` to ``closing7``. With `belief` there are
-    those for where a robot can be: ``spot``, and ``belief0`` to ``belief3``.
+    those for where a robot can be: ``spot``, and ``belief0`` to ``belief3``; with `doubts` one for ``doubt``.
 
     The rules hold inside an element of class ``ninefold-{theme}`` alone: style sheets of pictures set into one page reach
     the whole page.
     """
     scope = f".ninefold-{theme}"
-    light = _rules(scope, LIGHT, ROLES[:used], legs, "light", belief=belief)
-    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], legs, "dark", belief=belief)
+    light = _rules(scope, LIGHT, ROLES[:used], legs, "light", belief=belief, doubts=doubts)
+    dark = _rules(scope, DARK, _ROLES_ON_DARK[:used], legs, "dark", belief=belief, doubts=doubts)
     match theme:
         case "light":
             return light

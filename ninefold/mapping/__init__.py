@@ -28,33 +28,48 @@ from ninefold._lazy import attach
 if TYPE_CHECKING:
     from .closing import Health, health
     from .doubt.ambiguities import ambiguity
+    from .doubt.among import Whereabouts, WhichMap, locate_among
+    from .doubt.ask_driven import AskDriven
     from .doubt.backbone import Backbone
+    from .doubt.claims import Claim, Claims, Rejection, claims
     from .doubt.completeness import Completeness
     from .doubt.completeness_check import listed_maps
+    from .doubt.doubt_driven import DoubtDriven
     from .doubt.doubts import Again, Doubt
     from .doubt.estimate import Estimate, estimate
     from .doubt.following import Follower, locate
     from .doubt.hypotheses import Hypotheses, Hypothesis, hypotheses
+    from .doubt.joining import joined
     from .doubt.localizer import Candidate, Localizer, Move
+    from .doubt.merging import Merged, Overlaps, merge, overlaps
+    from .doubt.opening import open_map
+    from .doubt.why_not import WhyNot
     from .graphs import bridges, cut_vertices, shortest_path
     from .heading import Heading, circular_mean, unwrap, wrap
     from .names import Names
     from .numbering import Dart, Edge, Face, Vertex
     from .plane import PlaneMap
     from .robot.mapper import Closure, Mapper, build
+    from .robot.open_map import OpenMap
     from .robot.simulated import Exploration, explore
     from .robot.simulated_world import SimulatedWorld
+    from .robot.strategies import DepthFirst, NearestFirst, Strategy, WallFollowing
     from .robot.walk import Event, Samples, Visit, Walk, WalkHeader
     from .sets import Line, Point, Region, Set
 
 __all__ = [
     "Again",
+    "AskDriven",
     "Backbone",
     "Candidate",
+    "Claim",
+    "Claims",
     "Closure",
     "Completeness",
     "Dart",
+    "DepthFirst",
     "Doubt",
+    "DoubtDriven",
     "Edge",
     "Estimate",
     "Event",
@@ -68,29 +83,45 @@ __all__ = [
     "Line",
     "Localizer",
     "Mapper",
+    "Merged",
     "Move",
     "Names",
+    "NearestFirst",
+    "OpenMap",
+    "Overlaps",
     "PlaneMap",
     "Point",
     "Region",
+    "Rejection",
     "Samples",
     "Set",
     "SimulatedWorld",
+    "Strategy",
     "Vertex",
     "Visit",
     "Walk",
     "WalkHeader",
+    "WallFollowing",
+    "Whereabouts",
+    "WhichMap",
+    "WhyNot",
     "ambiguity",
     "bridges",
     "build",
     "circular_mean",
+    "claims",
     "cut_vertices",
     "estimate",
     "explore",
     "health",
     "hypotheses",
+    "joined",
     "listed_maps",
     "locate",
+    "locate_among",
+    "merge",
+    "open_map",
+    "overlaps",
     "shortest_path",
     "unwrap",
     "wrap",
@@ -99,6 +130,10 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
+        "doubt.claims": ("Claim", "Claims", "Rejection", "claims"),
+        "doubt.among": ("Whereabouts", "WhichMap", "locate_among"),
+        "doubt.ask_driven": ("AskDriven",),
+        "doubt.doubt_driven": ("DoubtDriven",),
         "doubt.ambiguities": ("ambiguity",),
         "doubt.backbone": ("Backbone",),
         "doubt.completeness": ("Completeness",),
@@ -108,15 +143,21 @@ __getattr__, __dir__ = attach(
         "closing": ("Health", "health"),
         "doubt.following": ("Follower", "locate"),
         "doubt.hypotheses": ("Hypotheses", "Hypothesis", "hypotheses"),
+        "doubt.joining": ("joined",),
         "doubt.localizer": ("Candidate", "Localizer", "Move"),
+        "doubt.why_not": ("WhyNot",),
+        "doubt.merging": ("Merged", "Overlaps", "merge", "overlaps"),
+        "doubt.opening": ("open_map",),
         "graphs": ("bridges", "cut_vertices", "shortest_path"),
         "heading": ("Heading", "circular_mean", "unwrap", "wrap"),
         "names": ("Names",),
         "numbering": ("Dart", "Edge", "Face", "Vertex"),
         "plane": ("PlaneMap",),
         "robot.mapper": ("Closure", "Mapper", "build"),
+        "robot.open_map": ("OpenMap",),
         "robot.simulated": ("Exploration", "explore"),
         "robot.simulated_world": ("SimulatedWorld",),
+        "robot.strategies": ("DepthFirst", "NearestFirst", "Strategy", "WallFollowing"),
         "robot.walk": ("Event", "Samples", "Visit", "Walk", "WalkHeader"),
         "sets": ("Line", "Point", "Region", "Set"),
     },

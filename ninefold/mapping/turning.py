@@ -21,7 +21,7 @@ from .heading import TAU
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["corner_angles", "edge_residual", "face_turns", "settle_turns"]
+__all__ = ["corner_angles", "edge_residual", "face_totals", "face_turns", "settle_turns"]
 
 
 def edge_residual(heading: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -44,6 +44,20 @@ def corner_angles(rotation: NDArray[np.int32], heading: NDArray[np.float64]) -> 
     angle -= heading
     angle[angle <= 0] += TAU
     return angle
+
+
+def face_totals(
+    next_face: NDArray[np.int32],
+    face_of: NDArray[np.int32],
+    n_faces: int,
+    corner: NDArray[np.float64],
+    turn: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return by how much every face turns, (n_faces,) radians; the parameters are those of `face_turns`."""
+    total = np.pi - corner[next_face]
+    total[0::2] += turn
+    total[1::2] -= turn
+    return np.asarray(np.bincount(face_of, weights=total, minlength=n_faces), dtype=np.float64)
 
 
 def face_turns(
@@ -72,7 +86,4 @@ def face_turns(
     The corner at the head of d lies between the next dart of the walk and the twin of d, which is the one after it around
     that vertex. Complexity O(E); array code throughout.
     """
-    total = np.pi - corner[next_face]
-    total[0::2] += turn
-    total[1::2] -= turn
-    return np.asarray(np.rint(np.bincount(face_of, weights=total, minlength=n_faces) / TAU), dtype=np.int64)
+    return np.rint(face_totals(next_face, face_of, n_faces, corner, turn) / TAU).astype(np.int64)

@@ -150,6 +150,14 @@ def test_explore_with_a_compass_that_errs(run_json, tmp_path):
     assert read_walk(walk).header == WalkHeader(tolerance=found["tolerance"], sigma=0.05, drift=0.02, exits="in-order")
 
 
+def test_explore_along_the_wall_and_without_names(run, tmp_path):
+    walk = tmp_path / "walk.jsonl"
+    assert run("explore", "sample:office", "-o", walk, "--tour", "wall", "--no-places")[0] == 0
+    found = read_walk(walk)
+    assert found == explore(samples.load("office").to_world(), tour="wall", places=False).walk
+    assert set(found.places) == {None}
+
+
 def test_measured_lengths_are_told_only_where_there_are_some(tmp_path, run, run_json):
     walk, atlas = tmp_path / "walk.jsonl", tmp_path / "office.atlas"
     assert run("explore", "sample:office", "-o", walk)[0] == 0
@@ -287,7 +295,7 @@ def test_what_is_refused_changes_nothing(tmp_path, run, figure8):
     for options, word in (
         (("--noise", "5"), "60 degrees"),
         (("--drift", "4"), "180 degrees"),
-        (("--tour", "wild"), "'covering', not 'wild'"),
+        (("--tour", "wild"), "'covering' or 'wall', not 'wild'"),
     ):
         assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", *options), word)
     assert_refused(run("explore", "sample:ring", "-o", tmp_path / "x.jsonl", "--step", "0"), "step")

@@ -362,7 +362,8 @@ def test_messages_speak_the_unit_of_the_log(yard):
 
 @pytest.mark.parametrize("sigma", [0, -0.1, radians(61), float("nan"), True, "5", None])
 def test_a_sigma_that_is_none_is_refused(yard, sigma):
-    with pytest.raises(BadInput, match="sigma is the standard deviation of a heading in radians, above 0 and at most 1.047"):
+    said = r"sigma is the standard deviation of a heading in radians, above 0 and at most 1\.047"
+    with pytest.raises(BadInput, match=said):
         Localizer(yard, sigma=sigma)
 
 

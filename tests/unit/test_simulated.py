@@ -283,7 +283,7 @@ def test_the_tolerance_suits_the_narrowest_fork():
         ({"noise": True}, BadInput, "noise is a standard deviation"),
         ({"drift": -0.1}, BadInput, "drift is the standard deviation"),
         ({"drift": 4}, BadInput, "drift is the standard deviation"),
-        ({"tour": "random"}, BadInput, "a tour is 'depth-first' or 'covering', not 'random'"),
+        ({"tour": "random"}, BadInput, "a tour is 'depth-first', 'covering' or 'wall', not 'random'"),
         ({"tours": 0}, BadInput, "tours is how often to walk every way, 1 or more, not 0"),
         ({"tours": 1.5}, BadInput, "tours is how often"),
         ({"tours": True}, BadInput, "tours is how often"),

@@ -49,10 +49,11 @@ WITH_METRES = 2
 BUSY_SECONDS = 5.0
 
 TABLES = """
--- Single values. origin: 'walk' or 'map'. header: the walk's header line as JSON. map_events: how many events the stored map
--- stands for (it may lag behind the log; it is never ahead). outer: a dart with the outer face on its left, -1 for no edge.
--- vertices, edges: row counts of the stored map. headings: 1 if it has headings and turns, else 0. warnings: JSON list of
--- sentences, as of the stored map.
+-- Single values. origin: 'walk' or 'map'; a map's events are the walk it was estimated from, if any. header: the walk's
+-- header line as JSON. map_events: how many events the stored map stands for (it may lag behind the log; it is never ahead).
+-- outer: a dart with the outer face on its left, -1 for no edge. vertices, edges: row counts of the stored map. headings: 1
+-- if it has headings and turns, else 0. warnings: JSON list of sentences, as of the stored map. guess: JSON of what is in
+-- doubt, where the map is the likeliest of several.
 CREATE TABLE meta (key TEXT NOT NULL PRIMARY KEY, value NOT NULL) WITHOUT ROWID;
 -- The walk, one event a row, in the form of a line of a walk file with headings in yaw radians.
 CREATE TABLE event (seq INTEGER PRIMARY KEY CHECK (seq > 0), json TEXT NOT NULL CHECK (typeof(json) = 'text'));

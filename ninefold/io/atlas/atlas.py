@@ -25,6 +25,7 @@ from ._definitions import KINDS, definition_of, set_of
 from ._event_log import EventLog, checked_time, event_text, header_text, put_snapshot, sentences, tells_metres
 from ._file import AtlasFile, put, text_that_can_be_written
 from ._map_rows import store_map
+from .guess import Guess
 from .records import Provenance, Statement
 
 if TYPE_CHECKING:
@@ -147,23 +148,43 @@ class Atlas:
         *,
         provenance: Provenance | None = None,
         warnings: Iterable[str] = (),
+        guess: Guess | None = None,
+        walk: Walk | None = None,
         force: bool = False,
     ) -> Self:
-        """Make an atlas of a finished map, without a walk, and open it.
+        """Make an atlas of a finished map, and open it. It takes no further events.
 
         Parameters
         ----------
         warnings
             Sentences to keep with it, such as `Source.notes`.
+        guess
+            What is in doubt about the map, if it is the likeliest of several: `Guess.of` an estimate. Its warnings are kept
+            before the others.
+        walk
+            What the map was estimated from, to be kept with it as evidence.
 
         Raises
         ------
         BadInput, AtlasError
             If the file exists, or cannot be written; then nothing is changed.
         """
+        header, events = (WalkHeader(), ()) if walk is None else (walk.header, walk.events)
+
+        def rows() -> Iterator[tuple[int, str]]:
+            time = -math.inf
+            for seq, event in enumerate(events, 1):
+                time = checked_time(event, time)
+                yield seq, event_text(event)
 
         def fill(connection: sqlite3.Connection) -> None:
-            put(connection, origin="map", header=header_text(WalkHeader()), map_events=0, warnings=sentences(warnings))
+            said = (*(guess.warnings if guess else ()), *warnings)
+            put(connection, origin="map", header=header_text(header), map_events=len(events), warnings=sentences(said))
+            if any(map(tells_metres, events)):
+                _schema.keep_metres(connection)
+            connection.executemany("INSERT INTO event VALUES (?, ?)", rows())
+            if guess is not None:
+                put(connection, guess=guess.to_json())
             store_map(connection, plane)
             _put_provenance(connection, provenance)
 
@@ -231,7 +252,10 @@ class Atlas:
 
     @property
     def origin(self) -> str:
-        """``"walk"`` where the map is built from an event log, ``"map"`` where it was stored as a whole."""
+        """``"walk"`` where the map is built from an event log, ``"map"`` where it was stored as a whole.
+
+        The events of the latter, if there are any, are the walk that the map was estimated from.
+        """
         return self._log.origin
 
     @property
@@ -281,6 +305,13 @@ class Atlas:
     def warnings(self) -> tuple[str, ...]:
         """What was left out or is unfinished: notes of the source, exits never travelled, a leg without end."""
         return self._log.warnings
+
+    @property
+    def guess(self) -> Guess | None:
+        """What is in doubt about the map, if it was kept as the likeliest of several; else None."""
+        rows = self._file.rows("SELECT value FROM meta WHERE key = 'guess'")
+        with self._file.damage():
+            return Guess.from_json(rows[0][0]) if rows else None
 
     # -- named sets ------------------------------------------------------------------------------------------------------
 

@@ -61,7 +61,7 @@ _LARGEST_FLOAT = sys.float_info.max
 _LINE_ENDS = frozenset(("\n", "", "\r\n"))
 
 
-def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None) -> Walk:
+def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None, sigma: float | None = None) -> Walk:
     """Read a whole walk log.
 
     Parameters
@@ -71,6 +71,8 @@ def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None) -
     tolerance
         Radians, instead of the header's: no two exits of a place may be closer, unless the header declares sigma. The
         header returned holds it.
+    sigma
+        Standard deviation of a heading, radians, instead of the header's. The header returned holds it.
 
     Raises
     ------
@@ -81,7 +83,7 @@ def read_walk(path: str | os.PathLike[str], *, tolerance: float | None = None) -
     -----
     Complexity O(size of the file). Whether the walk makes one map is for `ninefold.mapping.build` to say.
     """
-    reader = WalkReader(str(path), tolerance=tolerance)
+    reader = WalkReader(str(path), tolerance=tolerance, sigma=sigma)
     events = tuple(_parse(path, reader))
     return Walk(reader.header, events)
 
@@ -175,7 +177,7 @@ class WalkReader:
     ----------
     name
         What to call the source in messages.
-    tolerance
+    tolerance, sigma
         Radians, instead of the header's.
     header
         For lines that follow a header read before; otherwise the first line is the header.
@@ -188,10 +190,17 @@ class WalkReader:
     '7'
     """
 
-    def __init__(self, name: str, *, tolerance: float | None = None, header: WalkHeader | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        *,
+        tolerance: float | None = None,
+        sigma: float | None = None,
+        header: WalkHeader | None = None,
+    ) -> None:
         self.name = name
         self.line = 0
-        self._tolerance = tolerance
+        self._tolerance, self._sigma = tolerance, sigma
         self._header: WalkHeader | None = None
         self._unit = unit_of("yaw-rad")
         self._yaw = self._unit.to_yaw
@@ -278,6 +287,8 @@ class WalkReader:
     def _begin(self, header: WalkHeader) -> None:
         if self._tolerance is not None and self._tolerance != header.tolerance:
             header = replace(header, tolerance=self._tolerance)
+        if self._sigma is not None and self._sigma != header.sigma:
+            header = replace(header, sigma=self._sigma)
         self._header = header
         self._unit = unit_of(header.heading)
         self._yaw = self._unit.to_yaw

@@ -19,14 +19,16 @@ STANDARD_INPUT = "standard input"
 """What messages call it."""
 
 
-def read_stream(lines: Iterable[bytes], *, name: str = STANDARD_INPUT, tolerance: float | None = None) -> Walk:
+def read_stream(
+    lines: Iterable[bytes], *, name: str = STANDARD_INPUT, tolerance: float | None = None, sigma: float | None = None
+) -> Walk:
     """Read a whole walk from lines; see `ninefold.io.read_walk`.
 
     Parameters
     ----------
     name
         What to call the source in messages.
-    tolerance
+    tolerance, sigma
         Radians, instead of the header's.
 
     Raises
@@ -39,7 +41,7 @@ def read_stream(lines: Iterable[bytes], *, name: str = STANDARD_INPUT, tolerance
     >>> read_stream([b'{"ninefold": "walk", "version": 1, "heading": "yaw-rad"}', b'{"place": "hall"}']).places
     ('hall',)
     """
-    reader = WalkReader(name, tolerance=tolerance)
+    reader = WalkReader(name, tolerance=tolerance, sigma=sigma)
     events = tuple(event for line in walk_lines(lines, name=name) if (event := reader.take(line)) is not None)
     return Walk(reader.header, events)
 

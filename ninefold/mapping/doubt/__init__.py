@@ -34,6 +34,36 @@ exact under the declared noise.
 `following`    `locate`, `Follower`: a localizer taken along a walk, event by event
 =============  ==================================================================================================
 
+**Which places are the same?** Where places look alike, `hypotheses` returns every plane map that explains a walk.
+
+====================  ===========================================================================================
+`walk_tree`           the walk folded to a tree of nodes, of which every map is a quotient
+`likeness`            which nodes can be one place, under which shifts
+`quotients`           the search: a map with stubs that grows by splitting faces
+`quotient_sat`        the same by SAT on pairs of nodes, cut where faces turn wrongly
+`quotient_portfolio`  both in turn, for closed maps
+`hypotheses`          `hypotheses`, `Hypotheses`, `Hypothesis`: the maps, ranked
+`consequences`        what follows if two nodes are one place
+`why_not`             why two visits are not the same place, as a value
+`turning_faces`       faces and loops that turn as none does in the plane
+`existence`           whether there is a map at all
+`stretches`           the smallest stretch of a walk that already cannot be
+`comparing`           how one map of a walk differs from another, place by place
+`untravelled`         a map with an unknown place behind every exit that nobody walked
+`among`               `locate_among`: which of several maps is right, and where on it the robot is
+`claims`              `claims`: which of many claims that visits are one place cannot be right
+====================  ===========================================================================================
+
+**Where to go, and what two know together.**
+
+==============  =================================================================================================
+`ask_driven`    `AskDriven`: explore until it is settled whether a place is inside a cycle
+`doubt_driven`  `DoubtDriven`: explore until one map is left, where no place is recognised
+`opening`       `open_map`: what a walk, a hypothesis or a plane map knows, with the exits nobody walked
+`merging`       `merge`, `overlaps`: maps of two robots, laid over each other
+`joining`       `joined`: two walks as one, for robots that recognise no place
+==============  =================================================================================================
+
 `Stars` (in ``_stars``) holds the exits of every place by heading; ``_matching`` weighs all ways in which the exits seen can
 be those of a place; ``_ahead`` looks where to go. The public names are those of `ninefold.mapping`.
 """

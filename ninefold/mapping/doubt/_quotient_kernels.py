@@ -25,13 +25,13 @@ __all__ = ["Quotient", "searched"]
 # columns of `node`
 DEGREE, PLACE, SHIFT, NEXT, SIGN, UNITS, FAILS, GROUP = 0, 1, 2, 3, 4, 5, 6, 7
 # columns of `way`
-OTHER, BACK, KIND, LENGTH = 0, 1, 2, 3
+OTHER, BACK, KIND, LENGTH, BEYOND = 0, 1, 2, 3, 4
 # columns of `angle` and `bearing`
 HEADING, TURN = 0, 1
-# columns of `place`: DEGREE, FIRST, SIGN_OF_PLACE, REFERENCE
-FIRST, SIGN_OF_PLACE, REFERENCE = 1, 2, 3
-# columns of `exit`: MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY
-MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY = 0, 1, 2, 3, 4
+# columns of `place`: DEGREE, FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST
+FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST = 1, 2, 3, 4
+# columns of `exit`
+MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY, CLOCKWISE = 0, 1, 2, 3, 4, 5
 # columns of `group`
 PLACED, PLACE_OF_GROUP = 0, 1
 # columns of `balance`
@@ -43,7 +43,7 @@ UNITS_LEFT, DEMAND, DEGREE_OF_SIGN, KINDS = 0, 1, 2, 3
 # rows of `number`
 N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT = 0, 1, 2, 3, 4, 5
 # rows of `limit`
-LARGEST_MISS, MOST_PLACES = 0, 1
+TOLERANCE, MOST_PLACES = 0, 1
 # rows of `control`, how the search stands
 DEPTH, TOP, GOING_DOWN, N_DECISIONS, N_FOUND, DONE = 0, 1, 2, 3, 4, 5
 # columns of `frame`
@@ -62,15 +62,15 @@ class Quotient(NamedTuple):
     """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group
     of nodes that must be one place, or -1."""
     way: NDArray[np.int64]
-    """(N K, 4): other node, exit there, kind; microradians that its edge can turn."""
+    """(N K, 5): other node, exit there, kind; microradians that its edge can turn; edges of the tree out that way."""
     angle: NDArray[np.float64]
     """(N K, 2): heading, net turn."""
     alike: NDArray[np.int64]
     """(N, N): shifts under which two nodes can be one, as bits."""
     place: NDArray[np.int64]
-    """(P, 4): degree, first node, signature, node whose exits it has."""
+    """(P, 5): degree, first node of the list, signature, node whose exits it has, and its earliest node."""
     exit: NDArray[np.int64]
-    """(P K, 5): mate or -1, kind, a mark, how many ways may enter here, and the last of them."""
+    """(P K, 6): mate or -1, kind, a mark, how many ways may enter here and the last of them, the next exit clockwise."""
     bearing: NDArray[np.float64]
     """(P K, 2): heading, net turn of the edge."""
     kind: NDArray[np.int64]
@@ -84,7 +84,7 @@ class Quotient(NamedTuple):
     number: NDArray[np.int64]
     """(6,): places, length of the trail, microradians that edges not placed can turn, flags."""
     limit: NDArray[np.float64]
-    """(2,): largest closing miss of an edge, radians; most places."""
+    """(2,): tolerance, radians; most places."""
     trail: NDArray[np.int64]
     """(N,): nodes in the order placed."""
     group: NDArray[np.int64]
@@ -114,19 +114,14 @@ def wrapped(angle):  # type: ignore[no-untyped-def]
 @kernel
 def clockwise(q, x):  # type: ignore[no-untyped-def]
     """Return the exit of the same place that is next clockwise."""
-    width = q.exit.shape[0] // q.place.shape[0]
-    if x % width:
-        return x - 1
-    return x + q.place[x // width, DEGREE] - 1
+    return q.exit[x, CLOCKWISE]
 
 
 @kernel
 def corner(q, after, before):  # type: ignore[no-untyped-def]
     """Return the angle counter-clockwise from exit `before` to exit `after` of one place, in (0, 2 pi]."""
-    angle = (q.bearing[after, HEADING] - q.bearing[before, HEADING]) % (2 * np.pi)
-    if angle < 1e-9 or after == before:
-        return 2 * np.pi
-    return angle
+    angle = q.bearing[after, HEADING] - q.bearing[before, HEADING]  # the headings of a place lie within one turn
+    return angle if angle > 0.0 else angle + 2 * np.pi
 
 
 @kernel
@@ -142,10 +137,36 @@ def place_made(q, n):  # type: ignore[no-untyped-def]
     for x in range(q.node[n, DEGREE]):
         e = w * width + x
         q.exit[e, MATE] = -1
+        q.exit[e, CLOCKWISE] = e - 1 if x else e + q.node[n, DEGREE] - 1
         q.exit[e, KIND_OF_EXIT] = q.way[n * width + x, KIND]
         q.bearing[e, HEADING] = q.angle[n * width + x, HEADING]
         q.kind[q.exit[e, KIND_OF_EXIT], STUBS] += 1
     return w
+
+
+@kernel
+def count_way(q, n, x, change):  # type: ignore[no-untyped-def]
+    """Count the way that a placed node walked through an exit, if it is decided, among those left (+1) or no more (-1)."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    e = n * width + x
+    m = q.way[e, OTHER]
+    if m < 0 or q.node[m, PLACE] < 0:
+        return
+    if q.exit[q.node[n, PLACE] * width + (x + q.node[n, SHIFT]) % q.node[n, DEGREE], MATE] < 0:
+        return
+    q.kind[q.way[e, KIND], ENDS] += change
+    q.kind[q.way[m * width + q.way[e, BACK], KIND], ENDS] += change
+    q.number[TURN_LEFT] += change * q.way[e, LENGTH]
+
+
+@kernel
+def count_between(q, stub, change):  # type: ignore[no-untyped-def]
+    """Count the ways through a stub between nodes that were placed before it is decided; there are none in a tree."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    n = q.place[stub // width, FIRST]
+    while n >= 0:
+        count_way(q, n, (stub % width - q.node[n, SHIFT]) % q.node[n, DEGREE], change)
+        n = q.node[n, NEXT]
 
 
 @kernel
@@ -188,15 +209,14 @@ def put(q, n, w, shift):  # type: ignore[no-untyped-def]
         q.trail[q.number[N_TRAIL]] = n
         q.number[N_TRAIL] += 1
         for x in range(degree):
+            if q.way[n * width + x, OTHER] != n or q.way[n * width + x, BACK] > x:
+                count_way(q, n, x, -1)
+        for x in range(degree):
             e = n * width + x
             m = q.way[e, OTHER]
             if m < 0:
                 continue
             back = q.way[e, BACK]
-            if q.node[m, PLACE] >= 0:
-                q.kind[q.way[e, KIND], ENDS] -= 1
-                q.kind[q.way[m * width + back, KIND], ENDS] -= 1
-                q.number[TURN_LEFT] -= q.way[e, LENGTH]
             mate = q.exit[w * width + (x + shift) % degree, MATE]
             if mate >= 0:
                 other = mate // width
@@ -217,12 +237,8 @@ def taken_back(q, mark):  # type: ignore[no-untyped-def]
         q.number[N_TRAIL] -= 1
         n = q.trail[q.number[N_TRAIL]]
         for x in range(q.node[n, DEGREE]):
-            e = n * width + x
-            m = q.way[e, OTHER]
-            if m >= 0 and q.node[m, PLACE] >= 0:
-                q.kind[q.way[e, KIND], ENDS] += 1
-                q.kind[q.way[m * width + q.way[e, BACK], KIND], ENDS] += 1
-                q.number[TURN_LEFT] += q.way[e, LENGTH]
+            if q.way[n * width + x, OTHER] != n or q.way[n * width + x, BACK] > x:
+                count_way(q, n, x, 1)
         if q.node[n, GROUP] >= 0:
             q.group[q.node[n, GROUP], PLACED] -= 1
         q.place[q.node[n, PLACE], FIRST] = q.node[n, NEXT]
@@ -264,64 +280,181 @@ def walked_from(q, stub):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def contour(q, stub):  # type: ignore[no-untyped-def]
-    """Walk the face around a stub clockwise; return the number of other stubs met, in order, in `stub` and `turned`.
+def contour(q, begin):  # type: ignore[no-untyped-def]
+    """Walk the face around a stub clockwise; return the number of its stubs, which are in `stub` in order, this one first.
 
-    The turn to each counts the corners at either end; the turn after the last is that all the way round, the stub's own two
-    corners counted apart.
+    In `turned` is how far the way has turned at each of them since the first, half a turn less; and, after the last, all
+    the way round.
     """
-    met = 0
+    met = 1
     total = 0.0
-    before = stub
-    x = stub
+    q.stub[0] = begin
+    q.turned[0] = 0.0
+    q.exit[begin, SEEN] = 1
+    before = begin
+    x = begin
     while True:
         x = clockwise(q, x)
-        angle = np.pi - corner(q, before, x)
-        if x == stub:
-            q.turned[met] = total + angle
+        angle = corner(q, before, x)
+        if x == begin:
+            q.turned[met] = total - angle
             break
         if q.exit[x, MATE] < 0:
+            q.exit[x, SEEN] = 1
             q.stub[met] = x
-            q.turned[met] = total + angle
+            q.turned[met] = total - angle
             met += 1
         else:
-            total += angle + q.bearing[x, TURN]
+            total += np.pi - angle + q.bearing[x, TURN]
             before = q.exit[x, MATE]
             x = before
     return met
 
 
 @kernel
-def options(q, stub, walked, may_be_new):  # type: ignore[no-untyped-def]
-    """Return how many ends the way through a stub can have; they are in `option`, -1 for a new place."""
+def ahead(q, stub):  # type: ignore[no-untyped-def]
+    """Return how many edges of the tree lie behind a stub."""
     width = q.exit.shape[0] // q.place.shape[0]
+    n = q.place[stub // width, FIRST]
+    edges = 0
+    while n >= 0:
+        e = n * width + (stub % width - q.node[n, SHIFT]) % q.node[n, DEGREE]
+        if q.way[e, OTHER] >= 0:
+            edges += q.way[e, BEYOND]
+        n = q.node[n, NEXT]
+    return edges
+
+
+@kernel
+def may_turn(q, dart):  # type: ignore[no-untyped-def]
+    """Return whether, without a compass, the face left of a way can be made of faces that turn once.
+
+    In the end every corner and leg of a face may err by the tolerance. Here each is measured by the nodes that are placed
+    already, which differ from the first ones by twice the tolerance at most; and every edge to come adds two of each.
+    """
+    total = 0.0
+    legs = 0
+    edges = 0
+    x = dart
+    while True:
+        total += q.bearing[x, TURN]
+        legs += 1
+        before = q.exit[x, MATE]
+        x = clockwise(q, before)
+        while q.exit[x, MATE] < 0:
+            edges += ahead(q, x)
+            x = clockwise(q, x)
+        total += np.pi - corner(q, before, x)
+        if x == dart:
+            break
+    own = 2 * legs * q.limit[TOLERANCE]
+    if edges == 0:
+        own = min(own, np.pi)
+    allowed = own + 4 * (legs + edges) * q.limit[TOLERANCE]
+    return abs(abs(total) - 2 * np.pi) <= allowed + 1e-6
+
+
+@kernel
+def turns_once(q):  # type: ignore[no-untyped-def]
+    """Return whether, without a compass, all faces of a whole quotient turn +1 and one -1.
+
+    The corners are those of the earliest node of every place, the turns those of the leg walked first. A face turns a whole
+    number of times if it does within the tolerance for every corner and leg, and by less than half a turn.
+    """
+    width = q.exit.shape[0] // q.place.shape[0]
+    for w in range(q.number[N_PLACES]):
+        n = q.place[w, FIRST]
+        q.place[w, EARLIEST] = n
+        while n >= 0:
+            q.place[w, EARLIEST] = min(q.place[w, EARLIEST], n)
+            n = q.node[n, NEXT]
+        for x in range(q.place[w, DEGREE]):
+            q.exit[w * width + x, SEEN] = 0
+    outer = 0
+    for begin in range(q.number[N_PLACES] * width):
+        if begin % width >= q.place[begin // width, DEGREE] or q.exit[begin, MATE] < 0 or q.exit[begin, SEEN]:
+            continue
+        total = 0.0
+        legs = 0
+        x = begin
+        while True:
+            q.exit[x, SEEN] = 1
+            legs += 1
+            total += first_turn(q, x)
+            before = q.exit[x, MATE]
+            x = clockwise(q, before)
+            while q.exit[x, MATE] < 0:
+                x = clockwise(q, x)
+            n = q.place[x // width, EARLIEST]
+            degree = q.node[n, DEGREE]
+            after = q.angle[n * width + (before % width - q.node[n, SHIFT]) % degree, HEADING]
+            angle = (after - q.angle[n * width + (x % width - q.node[n, SHIFT]) % degree, HEADING]) % (2 * np.pi)
+            total += np.pi - (2 * np.pi if x == before else angle)
+            if x == begin:
+                break
+        allowed = min(2 * legs * q.limit[TOLERANCE] + 1e-9, np.pi - 1e-6)
+        if abs(total + 2 * np.pi) <= allowed:
+            outer += 1
+        elif abs(total - 2 * np.pi) > allowed:
+            return False
+    return outer == 1 or q.node.shape[0] == 1
+
+
+@kernel
+def first_turn(q, dart):  # type: ignore[no-untyped-def]
+    """Return the net turn along a way, by the leg that was walked first. A leg is numbered by the node it led to."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    earliest = q.node.shape[0]
+    turn = 0.0
+    n = q.place[dart // width, FIRST]
+    while n >= 0:
+        e = n * width + (dart % width - q.node[n, SHIFT]) % q.node[n, DEGREE]
+        if q.way[e, OTHER] >= 0 and max(n, q.way[e, OTHER]) < earliest:
+            earliest = max(n, q.way[e, OTHER])
+            turn = q.angle[e, TURN]
+        n = q.node[n, NEXT]
+    return turn
+
+
+@kernel
+def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
+    """Return how many ends the way through a stub of a contour can have; they are in `option`, -1 for a new place."""
+    width = q.exit.shape[0] // q.place.shape[0]
+    stub = q.stub[at]
     m = q.way[walked, OTHER]
     back = q.way[walked, BACK]
+    kind = q.way[m * width + back, KIND]
     turn = q.angle[walked, TURN]
     degree = q.node[m, DEGREE]
-    met = contour(q, stub)
-    whole = q.turned[met] - np.pi
+    judged = q.number[STRICT] == 1 and q.number[RELATIVE] == 0
     found = 0
-    if may_be_new:
+    end = -1
+    if q.node[m, PLACE] >= 0:  # no tree, where claims made nodes one: what lies beyond may be placed already
+        end = q.node[m, PLACE] * width + (back + q.node[m, SHIFT]) % degree
+    elif may_be_new:
         q.option[0] = -1
         found = 1
-    for j in range(met):
+    for step in range(1, met):
+        j = at + step
+        turned = q.turned[met] + np.pi - q.turned[at]
+        if j < met:
+            turned = np.pi - q.turned[at]
+        else:
+            j -= met
         other = q.stub[j]
+        if q.exit[other, KIND_OF_EXIT] != kind or (end >= 0 and other != end):
+            continue
         w = other // width
-        if q.place[w, DEGREE] != degree:
-            continue
         first = q.place[w, FIRST]
-        if not (q.alike[m, first] >> ((other % width - back - q.node[first, SHIFT]) % degree)) & 1:
+        if not (q.alike[m, first] >> ((other - w * width - back - q.node[first, SHIFT]) % degree)) & 1:
             continue
-        miss = wrapped(q.bearing[other, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
-        if abs(miss) > q.limit[LARGEST_MISS]:
-            continue
-        turns = (q.turned[j] - turn - miss) / (2 * np.pi)
-        if q.number[STRICT] == 1:
+        if judged:
+            miss = wrapped(q.bearing[other, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
+            turns = (turned + q.turned[j] - turn - miss) / (2 * np.pi)
             nearest = int(np.rint(turns))
             if abs(turns - nearest) > 0.02:
                 continue
-            if nearest != 1 and (nearest != -1 or whole > 0):
+            if nearest != 1 and (nearest != -1 or q.turned[met] > 0):
                 continue
         q.option[found] = other
         found += 1
@@ -394,6 +527,8 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                 q.balance[b, HERE] = 0
             excess = 0.0
             negative = 0.0
+            parts = 0
+            edges = 0
             total = 0.0
             paid = 0.0
             stubs = 0
@@ -401,6 +536,8 @@ def within_budget(q):  # type: ignore[no-untyped-def]
             while True:
                 q.exit[x, SEEN] = 1
                 stubs += 1
+                if q.number[RELATIVE]:
+                    edges += ahead(q, x)
                 k = q.exit[x, KIND_OF_EXIT]
                 if q.kind[k, COMPONENT] >= 0:
                     q.balance[q.kind[k, COMPONENT], HERE] += q.kind[k, SIDE]
@@ -410,6 +547,7 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                 while True:
                     x = clockwise(q, x)
                     angle = np.pi - corner(q, before, x)
+                    parts += 2
                     up += max(angle, 0.0)
                     down += max(-angle, 0.0)
                     if q.exit[x, MATE] < 0:
@@ -430,7 +568,13 @@ def within_budget(q):  # type: ignore[no-untyped-def]
                     q.balance[b, SURPLUS] += q.balance[b, HERE]
                 else:
                     q.balance[b, LACK] -= q.balance[b, HERE]
-            if total - np.pi * stubs < 0:  # the region of the outer face, which has 2 pi more negative turn than positive
+            total -= np.pi * stubs
+            may_err = 0.0
+            if q.number[RELATIVE]:
+                may_err = 3 * parts * q.limit[TOLERANCE]
+                negative += may_err
+                may_err += 4 * edges * q.limit[TOLERANCE]
+            if total < 0 and total + may_err < 2 * np.pi:  # it holds the outer face: 2 pi more negative turn than positive
                 excess = max(excess, paid) + 2 * np.pi
             needed += max(excess - negative, 0.0)
             if needed > possible + 1e-5:
@@ -462,21 +606,21 @@ def decided(q, stub, end):  # type: ignore[no-untyped-def]
     new = end == -1
     if new:
         end = place_made(q, m) * width + q.way[walked, BACK]
-        if q.number[RELATIVE]:  # without a compass a place gets its frame from the way that led there
-            carried = q.bearing[stub, HEADING] + np.pi + turn - q.bearing[end, HEADING]
-            first = end - q.way[walked, BACK]
-            for x in range(q.node[m, DEGREE]):
-                q.bearing[first + x, HEADING] += carried
-    settled = turn + wrapped(q.bearing[end, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
+    settled = turn
+    if not q.number[RELATIVE]:
+        settled += wrapped(q.bearing[end, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
     q.exit[stub, MATE] = end
     q.exit[end, MATE] = stub
     q.bearing[stub, TURN] = settled
     q.bearing[end, TURN] = -settled
     q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] -= 1
     q.kind[q.exit[end, KIND_OF_EXIT], STUBS] -= 1
+    count_between(q, stub, -1)
     if new and not put(q, m, end // width, 0):
         return end, False
     if not folded(q, stub, end):
+        return end, False
+    if q.number[RELATIVE] and q.number[STRICT] == 1 and not (may_turn(q, stub) and may_turn(q, end)):
         return end, False
     if q.number[CLOSED] == 1:
         for k in range(q.kind.shape[0]):
@@ -494,6 +638,7 @@ def undone(q, stub, end, trail, places):  # type: ignore[no-untyped-def]
     """Take a decision back: the trail and the places are as they were."""
     width = q.exit.shape[0] // q.place.shape[0]
     taken_back(q, trail)
+    count_between(q, stub, 1)
     q.exit[stub, MATE] = -1
     q.exit[end, MATE] = -1
     q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] += 1
@@ -523,28 +668,34 @@ def branch(q, best):  # type: ignore[no-untyped-def]
     may_be_new = q.number[N_PLACES] < q.limit[MOST_PLACES]
     for w in range(q.number[N_PLACES]):
         for x in range(q.place[w, DEGREE]):
-            e = w * width + x
-            if q.exit[e, MATE] >= 0:
+            q.exit[w * width + x, SEEN] = 0
+    for w in range(q.number[N_PLACES]):
+        for x in range(q.place[w, DEGREE]):
+            begin = w * width + x
+            if q.exit[begin, MATE] >= 0 or q.exit[begin, SEEN]:
                 continue
-            walked = walked_from(q, e)
-            if walked < 0:
-                continue
-            m = q.way[walked, OTHER]
-            found = options(q, e, walked, may_be_new)
-            if closed:
-                for j in range(found):
-                    if q.option[j] >= 0:
-                        q.exit[q.option[j], ENTERED] += 1
-                        q.exit[q.option[j], ENTERED_BY] = e
-            if found == 0:
-                q.node[m, FAILS] += 1
-                return e, 0
-            if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
-                chosen = e
-                fewest = found
-                heaviest = q.node[m, FAILS]
-                for j in range(found):
-                    best[j] = q.option[j]
+            met = contour(q, begin)
+            for at in range(met):
+                e = q.stub[at]
+                walked = walked_from(q, e)
+                if walked < 0:
+                    continue
+                m = q.way[walked, OTHER]
+                found = options(q, at, met, walked, may_be_new)
+                if closed:
+                    for j in range(found):
+                        if q.option[j] >= 0:
+                            q.exit[q.option[j], ENTERED] += 1
+                            q.exit[q.option[j], ENTERED_BY] = e
+                if found == 0:
+                    q.node[m, FAILS] += 1
+                    return e, 0
+                if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
+                    chosen = e
+                    fewest = found
+                    heaviest = q.node[m, FAILS]
+                    for j in range(found):
+                        best[j] = q.option[j]
     if not closed or chosen < 0:
         return chosen, fewest
     for w in range(q.number[N_PLACES]):
@@ -601,6 +752,8 @@ def searched(q, control, frame, choice, best, out, stop):  # type: ignore[no-unt
                     for k in range(q.kind.shape[0]):
                         if q.kind[k, STUBS] > 0:
                             whole = False
+                if whole and q.number[RELATIVE] and q.number[STRICT] == 1:
+                    whole = turns_once(q)
                 if whole:
                     for n in range(q.node.shape[0]):
                         out[found, n, 0] = q.node[n, PLACE]

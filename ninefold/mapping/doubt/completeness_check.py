@@ -127,7 +127,22 @@ class _Tree:
             return False
         degree = self.degree[n]
         here, there = self.heading[n], self.heading[m]
-        return all(abs(wrap(there[(x + k) % degree] - here[x])) <= self.tolerance for x in range(degree))
+        if not all(abs(wrap(there[(x + k) % degree] - here[x])) <= self.tolerance for x in range(degree)):
+            return False
+        return all(self._turn_alike(n, x, m, (x + k) % degree) for x in range(degree))
+
+    def _turn_alike(self, n: int, x: int, m: int, y: int) -> bool:
+        """Whether the ways out of two exits, if both were walked, turn by as many whole turns."""
+        if self.other[n][x] < 0 or self.other[m][y] < 0:
+            return True
+        near = wrap(self.heading[m][y] - self.heading[n][x])
+        far = wrap(self.heading[self.other[m][y]][self.back[m][y]] - self.heading[self.other[n][x]][self.back[n][x]])
+        return abs(self._settled(m, y) - self._settled(n, x) + near - far) < pi
+
+    def _settled(self, n: int, x: int) -> float:
+        """Return the turn along the way out of an exit as the headings at its two ends have it."""
+        turn = self.turn[n][x]
+        return turn + wrap(self.heading[self.other[n][x]][self.back[n][x]] + pi - self.heading[n][x] - turn)
 
     def shifts(self, n: int, m: int) -> list[int]:
         """Return the shifts under which two nodes can be one place."""

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from .reading import Reading
     from .ways import Bundle
 
-__all__ = ["Again", "Doubt", "again", "doubts_of"]
+__all__ = ["Again", "Doubt", "DoubtKind", "again", "doubts_of"]
+
+DoubtKind = Literal["order", "ways", "outer", "uncounted", "noise"]
+"""What a doubt is about; see `Doubt`."""
 
 MOST_PASSES = 200
 """Passes above which nobody is told how often to walk a way again."""
@@ -50,7 +53,7 @@ class Doubt:
         The doubt in words.
     """
 
-    kind: Literal["order", "ways", "outer", "uncounted", "noise"]
+    kind: DoubtKind
     places: tuple[str, ...]
     orders: tuple[tuple[str, ...], ...]
     text: str
@@ -236,6 +239,8 @@ def doubts_of(
             outer = _outer_doubt(reading)
             if outer is not None:
                 found.setdefault(("outer", ()), outer)
+        for doubt in _corner_doubts(reading):
+            found.setdefault(("outer", doubt.places), doubt)
         for doubt in _uncounted_doubts(reading):
             found.setdefault(("uncounted", doubt.places), doubt)
     if not counted_all or uncounted:
@@ -249,19 +254,33 @@ def _number_of_maps(reading: Reading) -> int | None:
     if not reading.noise.wanders or reading.settled.count is None:
         return reading.settled.count
     found = list(islice(reading.found(), MOST_OUTER + 1))
-    return len(found) if len(found) <= MOST_OUTER else None
+    return len(found) if len(found) <= MOST_OUTER and not reading.untold else None
 
 
 def _outer_doubt(reading: Reading) -> Doubt | None:
     """Return the doubt about which face is the outer one, if the likeliest map has several."""
     likeliest = reading.outer_faces()
-    if likeliest == 1:
+    if likeliest == 1 and not reading.untold:
         return None
-    if likeliest == 0:
-        text = "the map has too many faces to tell the outer one by likelihood"
+    if reading.untold:
+        text = "the map has too many faces, or too many narrow corners, to tell the outer one by likelihood"
     else:
         text = f"which face is the outer one: {counted(likeliest, 'face')} can be"
     return Doubt("outer", (), (), text)
+
+
+def _corner_doubts(reading: Reading) -> list[Doubt]:
+    """Return doubts about the outer face where no rotation tells it: two ways nearly the same, or a way that winds."""
+    places = reading.evidence.places
+    found = []
+    for factor in reading.settled.factors if reading.settled else ():
+        if factor.outer > 1:
+            names = tuple(places[place] for place in factor.places)
+            shown = ", ".join(map(quoted, names[:4])) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
+            why = f", as a corner at {shown} may be narrow or wide" if names else ", as a way may wind once more"
+            text = f"which face is the outer one: {counted(factor.outer, 'face')} can be{why}"
+            found.append(Doubt("outer", names, (), text))
+    return found
 
 
 def _uncounted_doubts(reading: Reading) -> list[Doubt]:

@@ -113,7 +113,7 @@ class Estimate:
         """Yield every map that is left, the likeliest first, as they are asked for.
 
         How likely is told by the squared misses of the readings, with a penalty for every way. Where `count` is None there
-        may be very many.
+        may be very many, and some map comes first, not the likeliest.
         """
         found: Iterator[Found] = heapq.merge(
             *(reading.found() for reading in self._outcome.readings), key=lambda one: one.cost

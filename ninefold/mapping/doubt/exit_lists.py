@@ -17,7 +17,7 @@ import numpy as np
 
 from ..heading import TAU
 from .evidence import wrap_all
-from .noise import LOG_ODDS
+from .noise import LOG_ODDS, SURE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +31,10 @@ __all__ = ["Directions", "averaged", "biases"]
 
 RESOLVED = 3 * sqrt(2)
 """Standard deviations of one reading that two exits of averaged sorted lists must lie apart for the lists to be used."""
+
+
+ROUNDS = 4
+"""Times the lists of a walk are gone through at most to tell how the robot stood."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +139,8 @@ def biases(
 
     A list is laid over those of earlier visits to the same place; by how much it has to be turned is the bias. With a
     compass the bias is near nought; without one it is near that of the visit before, and a place seen for the first time is
-    taken to lie as the frame stood.
+    taken to lie as the frame stood. An exit that was seen to lead to one place is never laid over one that leads to another,
+    so that a crossing whose exits look alike from all sides is told apart by where they lead.
 
     Returns
     -------
@@ -147,44 +152,15 @@ def biases(
     -----
     Complexity O(sum of K squared over the visits).
     """
-    bias = np.zeros(len(evidence.at))
     known = np.array([all(evidence.exits[visit] is not None for visit in visits) for visits in visits_of], np.bool_)
-    frame: dict[int, tuple[NDArray[np.float64], float]] = {}
-    aligned: list[NDArray[np.float64]] = []
-    single = noise.sigma**2
-    now, spread = 0.0, 0.0
-    for visit, place in enumerate(evidence.at.tolist()):
-        if noise.compass:
-            now, spread = 0.0, noise.drift**2
-        else:
-            spread += noise.drift**2 + 2 * single
-        yaws = evidence.exits[visit]
-        if yaws is None or not yaws.size or not known[place]:
-            aligned.append(np.zeros(0))
-            continue
-        row = yaws if noise.in_order and yaws.size > 2 else np.sort(yaws)
-        if place not in frame:
-            frame[place] = (row - now, spread)
-            aligned.append(row)
-            bias[visit] = now
-            continue
-        mean, then = frame[place]
-        off = wrap_all(_shifted(row[None])[0] - mean - now)
-        off = off[:, :1] + wrap_all(off - off[:, :1])  # misses about half a turn lie on either side of it: one lump
-        whole = TAU * np.round(off.mean(axis=1) / TAU)
-        off -= whole[:, None]
-        turned = off.mean(axis=1)
-        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (
-            2 * (spread + then + 2 * single / row.size)
-        )
-        best = int(cost.argmin())
-        if row.size > 1 and np.sort(cost)[1] - cost[best] <= LOG_ODDS:
-            known[place] = False
-        now += float(turned[best])
-        bias[visit] = now
-        aligned.append(mean + now + off[best] - turned[best])
-        if not noise.compass:
-            spread = then
+    leads: list[dict[int, int]] = [{} for _ in visits_of]
+    unsure: set[int] = set()
+    for _ in range(ROUNDS):  # what one visit shows of where exits lead may tell how the robot stood at an earlier one
+        before = sum(map(len, leads))
+        bias, aligned, unsure = _stood(evidence, noise, known, leads)
+        if not unsure or sum(map(len, leads)) == before:
+            break
+    known[list(unsure)] = False
     for place, visits in enumerate(visits_of):
         if not known[place]:
             bias[list(visits)] = 0.0
@@ -196,3 +172,96 @@ def biases(
         of_visit = rows.mean(axis=1)
         bias[list(visits)] = of_visit - (of_visit.mean() if noise.compass else of_visit[0] - bias[visits[0]])
     return bias, known
+
+
+def _stood(
+    evidence: Evidence, noise: NoiseModel, known: NDArray[np.bool_], leads: list[dict[int, int]]
+) -> tuple[NDArray[np.float64], list[NDArray[np.float64]], set[int]]:
+    """Lay every list over those before it at its place; note in `leads` where the exits of every place lead.
+
+    Returns (bias of every visit, its list turned to lie over the others, places with a visit at which that was not certain).
+    """
+    bias = np.zeros(len(evidence.at))
+    frame: dict[int, tuple[NDArray[np.float64], int]] = {}
+    parent = [0]  # how every frame was handed on, as a tree: of a place from the one that the robot came from
+    here = 0
+    aligned: list[NDArray[np.float64]] = []
+    single = noise.sigma**2
+    unsure: set[int] = set()
+    now = 0.0
+    for visit, place in enumerate(evidence.at.tolist()):
+        if noise.compass:
+            now = 0.0
+        yaws = evidence.exits[visit]
+        if yaws is None or not yaws.size or not known[place]:
+            aligned.append(np.zeros(0))
+            here = _handed_on(parent, here)
+            continue
+        row = yaws if noise.in_order and yaws.size > 2 else np.sort(yaws)
+        ends = _ends_of(evidence, visit, row, noise.sigma)
+        if place not in frame:
+            leads[place].update(ends)
+            here = _handed_on(parent, here)
+            frame[place] = (row - now, here)
+            aligned.append(row)
+            bias[visit] = now
+            continue
+        mean, there = frame[place]
+        legs = 1 + _apart(parent, here, there)
+        spread = 2 * noise.drift**2 if noise.compass else legs * (noise.drift**2 + 2 * single)
+        before, here = here, there
+        off = wrap_all(_shifted(row[None])[0] - mean - now)
+        off = off[:, :1] + wrap_all(off - off[:, :1])  # misses about half a turn lie on either side of it: one lump
+        whole = TAU * np.round(off.mean(axis=1) / TAU)
+        off -= whole[:, None]
+        turned = off.mean(axis=1)
+        cost = ((off - turned[:, None]) ** 2).sum(axis=1) / (4 * single) + turned**2 / (2 * (spread + 2 * single / row.size))
+        for shift in range(row.size):
+            if any(leads[place].get((i - shift) % row.size, end) != end for i, end in ends.items()):
+                cost[shift] = np.inf
+        best = int(cost.argmin())
+        if np.isinf(cost[best]) or (row.size > 1 and np.sort(cost)[1] - cost[best] <= LOG_ODDS):
+            unsure.add(place)
+            here = _handed_on(parent, before)
+            aligned.append(row)
+            continue
+        leads[place].update({(i - best) % row.size: end for i, end in ends.items()})
+        now += float(turned[best])
+        bias[visit] = now
+        aligned.append(mean + now + off[best] - turned[best])
+    return bias, aligned, unsure
+
+
+def _ends_of(evidence: Evidence, visit: int, row: NDArray[np.float64], sigma: float) -> dict[int, int]:
+    """Return where the exits by which the robot came and left lead, by their numbers in the list of that visit.
+
+    A reading belongs to an exit of the list if no other lies within what both can err by.
+    """
+    legs = []
+    if visit > 0:
+        legs.append((evidence.back[visit - 1], int(evidence.at[visit - 1])))
+    if visit < evidence.n_legs:
+        legs.append((evidence.out[visit], int(evidence.at[visit + 1])))
+    found = {}
+    for yaw, end in legs:
+        near = np.flatnonzero(np.abs(wrap_all(row - yaw)) <= SURE * sqrt(2) * sigma)
+        if near.size == 1:
+            found[int(near[0])] = end
+    return found
+
+
+def _handed_on(parent: list[int], here: int) -> int:
+    """Let a new frame come after this one, and return it. A frame has a higher number than the one it comes after."""
+    parent.append(here)
+    return len(parent) - 1
+
+
+def _apart(parent: list[int], a: int, b: int) -> int:
+    """Return how many legs lie between two frames: what the frame wandered over all other legs is the same for both."""
+    legs = 0
+    while a != b:
+        if a < b:
+            a, b = b, a
+        a = parent[a]
+        legs += 1
+    return legs

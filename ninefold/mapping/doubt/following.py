@@ -14,6 +14,8 @@ from .localizer import Localizer
 from .noise import sigma_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ..plane import PlaneMap
     from ..robot.walk import Event, Walk
     from ..sets import Set
@@ -69,6 +71,8 @@ class Follower:
         Of the walk: whether it has a compass, the unit in which messages speak of headings, and sigma.
     sigma, start
         See `locate`.
+    beyond
+        Places of which nothing is known; see `Localizer`.
 
     Attributes
     ----------
@@ -77,7 +81,13 @@ class Follower:
     """
 
     def __init__(
-        self, plane: PlaneMap, header: WalkHeader | None = None, *, sigma: float | None = None, start: Set | None = None
+        self,
+        plane: PlaneMap,
+        header: WalkHeader | None = None,
+        *,
+        sigma: float | None = None,
+        start: Set | None = None,
+        beyond: Iterable[str] = (),
     ) -> None:
         header = WalkHeader() if header is None else header
         self.localizer = Localizer(
@@ -85,6 +95,7 @@ class Follower:
             sigma=sigma_of(header) if sigma is None else sigma,
             compass=header.compass,
             start=start,
+            beyond=beyond,
             unit="yaw-deg" if header.heading == "yaw-rad" else header.heading,
         )
         self._leg = LegReader(unit_of(header.heading))

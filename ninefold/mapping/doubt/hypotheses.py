@@ -25,10 +25,12 @@ from .completeness import Completeness, completeness
 from .likeness import Likeness, likeness
 from .quotient_portfolio import closed_maps
 from .quotients import QuotientSearch
+from .stretches import smallest_stretch
 from .walk_tree import Contradiction, WalkTree, fold
+from .why_not import WhyNot, why_not
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -93,11 +95,11 @@ class Hypotheses:
     exact
         Whether the search came to its end, so that `count` is their number.
     contradiction
-        Why no map explains the walk, if that shows in a stretch of it.
+        Why no map explains the walk, if that shows in a stretch of it: the smallest such.
     seconds
         What the search took.
-    wanted, most_places
-        What was asked for, as `closed` and `max_places` of `hypotheses`.
+    closed, max_places
+        Which maps were asked for.
     """
 
     tree: WalkTree = field(repr=False)
@@ -107,8 +109,8 @@ class Hypotheses:
     exact: bool
     contradiction: Contradiction | None
     seconds: float
-    wanted: bool | None = field(default=None, repr=False)
-    most_places: int | None = field(default=None, repr=False)
+    closed: bool | None = None
+    max_places: int | None = None
 
     def __len__(self) -> int:
         return len(self.maps)
@@ -145,8 +147,8 @@ class Hypotheses:
             self.alike,
             [one.place for one in self.maps],
             complete=complete,
-            closed=self.wanted is True,
-            narrowed=self.most_places is not None or self.wanted is False,
+            closed=self.closed is True,
+            narrowed=self.max_places is not None or self.closed is False,
             budget=budget,
         )
 
@@ -167,13 +169,28 @@ class Hypotheses:
         """
         if not self.exact or len(self.maps) != self.count:
             raise BadInput("only an exact count of maps that are all kept has evidence; give a larger budget or limit")
-        if self.contradiction is not None or self.most_places is not None or self.wanted is False:
+        if self.contradiction is not None or self.max_places is not None or self.closed is False:
             raise BadInput(
                 "evidence is about all maps, or all closed ones, of a walk that does not contradict itself: leave out "
                 "max_places, and let closed be None or True"
             )
         maps = [np.stack([one.place, one.shift], axis=1) for one in self.maps]
-        return completeness(self.tree, self.alike, maps, closed=self.wanted is True, budget=budget)
+        return completeness(self.tree, self.alike, maps, closed=self.closed is True, budget=budget)
+
+    def why_not(self, i: int, j: int, *, budget: float = 10.0) -> WhyNot | None:
+        """Return why two visits, counted from 0, are the same place in none of the maps; None if they are in one.
+
+        Parameters
+        ----------
+        budget
+            Seconds for a search, where neither a plain reason nor the maps listed tell.
+
+        Raises
+        ------
+        BadInput
+            For visits that the walk does not have.
+        """
+        return why_not(self, i, j, budget=budget)
 
 
 def hypotheses(
@@ -186,6 +203,7 @@ def hypotheses(
     tolerance: float | None = None,
     same: Iterable[tuple[int, int]] = (),
     differ: Iterable[tuple[int, int]] = (),
+    report: Callable[[int], object] | None = None,
 ) -> Hypotheses:
     """Find every plane map that explains a walk.
 
@@ -206,6 +224,8 @@ def hypotheses(
         Radians within which two headings may be of one exit, instead of the header's.
     same, differ
         Pairs of visits, counted from 0, that are known to be one place, or two.
+    report
+        Called with the number of maps found so far, now and then.
 
     Raises
     ------
@@ -215,21 +235,32 @@ def hypotheses(
     if not isinstance(walk, Walk):
         raise BadInput(f"hypotheses explain a Walk, such as read_walk gives, not {quoted(walk)}")
     begun = monotonic()
+    until = begun + (BUDGET if budget is None else budget)
     tree = fold(walk, tolerance=tolerance)
     if tree.contradiction is not None:
-        return Hypotheses(tree, likeness(tree), (), 0, exact=True, contradiction=tree.contradiction, seconds=0.0)
+        shown = smallest_stretch(walk, tolerance=tolerance, until=until) or tree.contradiction
+        return Hypotheses(tree, likeness(tree), (), 0, True, shown, monotonic() - begun, closed, max_places)
+    same, differ, told = tuple(same), tuple(differ), report or (lambda _: None)
     alike = likeness(tree, same=_nodes(tree, same), differ=_nodes(tree, differ))
-    until = begun + (BUDGET if budget is None else budget)
     most = KEPT if limit is None else limit
     found: list[Hypothesis] = []
     count, exact = 0, True
     if closed is not False:
-        count, exact = _closed_maps(tree, alike, found, most, max_places, until)
+        count, exact = _closed_maps(tree, alike, found, most, max_places, until, told)
     if closed is not True:
-        number, whole = _open_maps(tree, alike, found, most, max_places, until, closed=count if closed is None else 0)
+        shut = count if closed is None else 0
+        number, whole = _open_maps(tree, alike, found, most, max_places, until, told, closed=shut)
         count, exact = count + number, exact and whole
-    found.sort(key=lambda one: (not one.closed, one.n_places, one.place.tolist()))
-    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, None, monotonic() - begun, closed, max_places)
+    found.sort(key=_rank)
+    wrong: Contradiction | None = None
+    if exact and not count:
+        wrong = smallest_stretch(walk, tolerance=tolerance, max_places=max_places, same=same, differ=differ, until=until)
+    return Hypotheses(tree, alike, tuple(found[:most]), count, exact, wrong, monotonic() - begun, closed, max_places)
+
+
+def _rank(one: Hypothesis) -> tuple[bool, int, list[int]]:
+    """Return what maps are ranked by: closed before open, fewest places first."""
+    return not one.closed, one.n_places, one.place.tolist()
 
 
 def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -243,10 +274,16 @@ def _nodes(tree: WalkTree, visits: Iterable[tuple[int, int]]) -> list[tuple[int,
 
 
 def _closed_maps(
-    tree: WalkTree, alike: Likeness, found: list[Hypothesis], most: int, max_places: int | None, until: float
+    tree: WalkTree,
+    alike: Likeness,
+    found: list[Hypothesis],
+    most: int,
+    max_places: int | None,
+    until: float,
+    report: Callable[[int], object],
 ) -> tuple[int, bool]:
     """Find the closed maps; return (count, whether all)."""
-    outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places)
+    outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places, report=report)
     found += [_hypothesis(tree, places) for places in outcome.maps]
     return outcome.found, outcome.exact
 
@@ -258,6 +295,7 @@ def _open_maps(
     most: int,
     max_places: int | None,
     until: float,
+    report: Callable[[int], object],
     *,
     closed: int,
 ) -> tuple[int, bool]:
@@ -269,8 +307,11 @@ def _open_maps(
             one = _hypothesis(tree, places)
             if not one.closed:
                 number += 1
-                if len(found) < most + closed:
-                    found.append(one)
+                found.append(one)
+                if len(found) > 2 * most + closed + 1000:
+                    found.sort(key=_rank)
+                    del found[max(most, closed) :]
+        report(closed + number)
         if monotonic() > until:
             return number, False
     return number, True

@@ -1,8 +1,10 @@
 """Which nodes of a folded walk can be one place, and what that says of their exits.
 
 Two nodes can be one place under a shift k, exit x of the one being exit x + k of the other, when they have as many exits and
-the headings agree within the tolerance: with a compass as they are, without one up to a common turn. Exits that some chain
-of such shifts makes one are of one *kind*: whatever map explains the walk, exits of different kinds are different.
+the headings agree within the tolerance: with a compass as they are, without one once some common turn is taken off. Where
+both walk an exit they must have walked it alike: with a compass as many whole turns, without one as far round, within twice
+the tolerance. Exits that some chain of such shifts makes one are of one *kind*: whatever map explains the walk, exits of
+different kinds are different.
 """
 
 from __future__ import annotations
@@ -21,7 +23,10 @@ if TYPE_CHECKING:
 
     from .walk_tree import WalkTree
 
-__all__ = ["Likeness", "likeness"]
+__all__ = ["Likeness", "can_be_one", "likeness"]
+
+EPSILON = 1e-9
+"""Radians that rounding may add."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +86,40 @@ def likeness(tree: WalkTree, *, same: Iterable[tuple[int, int]] = (), differ: It
     return Likeness(shifts, kind, n_kinds, signature, _groups(tree.n_nodes, pairs))
 
 
+def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether pairs of nodes can be one place under given shifts, (P,); as the table of `likeness` without making it.
+
+    Parameters
+    ----------
+    n, m, shift
+        (P,) int64: exit x of node n would be exit x + shift of node m. Without a compass either node may be the one that the
+        other's headings are turned to.
+
+    Notes
+    -----
+    Complexity O(P times K), array code.
+    """
+    degree = tree.degree[n]
+    exits = np.arange(tree.heading.shape[1])
+    there = (exits + shift[:, None]) % np.maximum(degree, 1)[:, None]
+    miss = tree.heading[m[:, None], there] - tree.heading[n]
+    real = exits < degree[:, None]
+    frames = [miss]
+    if not tree.compass:
+        first = (-shift) % np.maximum(degree, 1)
+        frames = [miss - miss[:, :1], miss - miss[np.arange(n.size), first][:, None]]
+    found = np.zeros(n.size, np.bool_)
+    for off in frames:
+        off = off - TAU * np.round(off / TAU)
+        found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
+    found &= tree.degree[m] == degree
+    here = np.broadcast_to(exits, there.shape)
+    row, column = np.nonzero(real & (tree.other[n] >= 0) & (tree.other[m[:, None], there] >= 0) & found[:, None])
+    ways = _ways_alike(tree, n[row], here[row, column], m[row], there[row, column])
+    found[row[~ways]] = False
+    return found
+
+
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:
     """Number the sets of nodes that a chain of pairs makes one place; -1 for nodes in no pair."""
     from scipy.sparse import coo_array
@@ -111,10 +150,47 @@ def _shifts(tree: WalkTree) -> NDArray[np.int64]:
             if not tree.compass:
                 miss = miss - miss[:, :, :1]
             miss -= TAU * np.round(miss / TAU)
-            bits |= (np.abs(miss).max(axis=2) <= tree.tolerance + 1e-12).astype(np.int64) << k
+            if tree.compass:
+                agree = np.abs(miss).max(axis=2) <= tree.tolerance + EPSILON
+            else:
+                agree = np.ptp(miss, axis=2) <= 2 * tree.tolerance + EPSILON
+            for x in range(degree):
+                agree &= _walked_alike(tree, nodes, x, (x + k) % degree)
+            bits |= agree.astype(np.int64) << k
         found[np.ix_(nodes, nodes)] = bits
     np.fill_diagonal(found, 1)
     return found
+
+
+def _walked_alike(tree: WalkTree, nodes: NDArray[np.int64], x: int, y: int) -> NDArray[np.bool_]:
+    """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); so where one is not walked."""
+    first, second = np.flatnonzero(tree.other[nodes, x] >= 0), np.flatnonzero(tree.other[nodes, y] >= 0)
+    agree = np.ones((nodes.size, nodes.size), np.bool_)
+    agree[np.ix_(first, second)] = _ways_alike(tree, nodes[first][:, None], x, nodes[second][None, :], y)
+    return agree
+
+
+def _ways_alike(
+    tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int, m: NDArray[np.int64], y: NDArray[np.int64] | int
+) -> NDArray[np.bool_]:
+    """Whether ways that were walked out of exits x of nodes n turn as those out of exits y of nodes m; arrays broadcast.
+
+    With a compass they turn by as many whole turns, whatever the headings at their ends differ by; without, about alike.
+    """
+    if not tree.compass:
+        return np.asarray(np.abs(tree.turn[m, y] - tree.turn[n, x]) <= 2 * tree.tolerance + EPSILON)
+    off = _settled(tree, m, y) - _settled(tree, n, x)
+    far = tree.heading[tree.other[m, y], tree.back[m, y]] - tree.heading[tree.other[n, x], tree.back[n, x]]
+    near = tree.heading[m, y] - tree.heading[n, x]
+    off = off + near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
+    return np.asarray(np.abs(off) < np.pi)
+
+
+def _settled(tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int) -> NDArray[np.float64]:
+    """Return the turn along the way out of an exit as the headings at its two ends have it."""
+    turn = tree.turn[n, x]
+    miss = tree.heading[tree.other[n, x], tree.back[n, x]] + np.pi - tree.heading[n, x] - turn
+    return np.asarray(turn + miss - TAU * np.round(miss / TAU))
 
 
 def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:

@@ -102,12 +102,15 @@ class Localizer:
         How likely a list has one exit too many, in any direction.
     unit
         In which messages speak of headings, as in the header of a walk.
+    beyond
+        Names of places of which nothing is known but the way there, each a dead end of the map. No robot is switched on
+        there; one that goes there stays there, and whatever it sees and does from then on fits as well as anything can.
 
     Raises
     ------
-    BadInput, DifferentMaps
-        For a map without headings, a sigma that is none or above 60 degrees, probabilities that are none, or `missed` and
-        `extra` without a compass.
+    BadInput, DifferentMaps, UnknownName
+        For a map without headings, a sigma that is none or above 60 degrees, probabilities that are none, `missed` and
+        `extra` without a compass, or names that the map does not have.
 
     Notes
     -----
@@ -146,6 +149,7 @@ class Localizer:
         missed: float = 0.0,
         extra: float = 0.0,
         unit: HeadingUnit = "yaw-deg",
+        beyond: Iterable[str] = (),
     ) -> None:
         if not isinstance(plane, PlaneMap):
             raise BadInput(f"a PlaneMap is needed, such as read_map gives, not {quoted(plane)}")
@@ -164,10 +168,14 @@ class Localizer:
         self._stars = Stars(plane, plane.heading)
         self._along = np.repeat(plane.turn, 2) * np.tile([-1.0, 1.0], plane.turn.size)  # net rotation towards a dart's tail
         self._n_darts = plane.tail.size  # state d < 2E is dart d, 2E + v is place v with the way back unknown
-        places = np.arange(plane.n_vertices) if start is None else np.flatnonzero(places_in(plane, start, closed=True))
+        self._beyond = np.zeros(plane.n_vertices, np.bool_)
+        self._beyond[[plane.vertex_names.row(name) for name in beyond]] = True
+        inside = ~self._beyond if start is None else places_in(plane, start, closed=True)
+        places = np.flatnonzero(inside)
         self._states = self._n_darts + places.astype(np.int64)
         self._log = np.full(places.size, -np.log(places.size))
         self._before = self._log  # log weights before what was seen here, which a move needs
+        self._evidence = self._evidence_before = 0.0  # log likelihood of all that was seen and done; and without this look
         self._look = Look()
         self._given: tuple[int, ...] = ()  # where each exit of the list, as given, is in the look
         self._observations = self._moves = 0
@@ -197,13 +205,15 @@ class Localizer:
         states, before = self._states, self._log
         if look.tells_the_way_back:
             states, before = self._by_way_back(states, before)
-        found = np.full(states.size, -np.inf)
+        found = np.where(self._beyond[self._places(states)], 0.0, -np.inf)
         for k, rows in self._by_degree(states):
             yaw, back = self._yaw(states[rows], k)
             found[rows] = weights(yaw, back, look, self._noise, compass=self.compass)
         after = before + found
         self._require(after, look, "the way back")
         self._observations += 1
+        self._evidence_before = self._evidence
+        self._evidence += _log_total(after)
         kept = after > after.max() + _FORGOTTEN
         self._states, self._before, self._log = states[kept], before[kept], _normal(after[kept])
         self._look, self._given = look, given
@@ -231,7 +241,8 @@ class Localizer:
         """
         leaving = self._leaving(by)
         rotation = None if turn is None else finite("a turn", turn)
-        arriving, shares = [np.zeros(0, np.int64)], [np.zeros(0)]
+        gone = self._beyond[self._places(self._states)]
+        arriving, shares = [self._states[gone]], [self._before[gone]]
         for k, rows in self._by_degree(self._states):
             if not k:
                 continue
@@ -243,11 +254,12 @@ class Localizer:
         taken = Look(back=leaving[0])
         self._require(share, taken, "a way")
         if rotation is not None:
-            share += self._turned(rotation)[darts]
+            share += np.where(self._beyond[self._stars.tail[darts]], 0.0, self._turned(rotation)[darts])
             self._require(share, taken, f"a way that turns by {self._unit.angle(rotation)}")
         likely = np.bincount(darts, weights=np.exp(share - share.max()), minlength=self._n_darts)
         states = np.flatnonzero(likely > exp(_FORGOTTEN) * likely.max())
         self._moves += 1
+        self._evidence = self._evidence_before = self._evidence_before + _log_total(share)
         self._states = states
         self._before = self._log = _normal(np.log(likely[states]))
         self._look, self._given = Look(), ()
@@ -274,6 +286,15 @@ class Localizer:
         """(V,) float64, how likely the robot is at each place of the map; they add up to 1."""
         at = np.bincount(self._places(self._states), weights=np.exp(self._log), minlength=self.plane.n_vertices)
         return np.asarray(at / at.sum())
+
+    @property
+    def log_evidence(self) -> float:
+        """How likely all that was seen and done is on this map: a natural logarithm, to be held against another map's.
+
+        It is a log density up to what is the same for all maps, given the same observations, noise and compass. The
+        difference of two is the logarithm of how much more likely the one map made them.
+        """
+        return self._evidence
 
     def candidates(self, mass: float = CERTAIN) -> tuple[Candidate, ...]:
         """Return the places where the robot can be, the likeliest first.
@@ -406,10 +427,11 @@ class Localizer:
         return np.where(alone, states - self._n_darts, self._stars.tail[np.where(alone, 0, states)])
 
     def _by_degree(self, states: NDArray[np.int64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
-        """Give the rows of states by the number of exits there, those whose way back is known apart."""
-        degree = self._stars.degree[self._places(states)]
+        """Give the rows of states by the number of exits there, those whose way back is known apart; none beyond the map."""
+        places = self._places(states)
+        degree = np.where(self._beyond[places], -1, self._stars.degree[places])
         alone = states >= self._n_darts
-        for k in np.flatnonzero(np.bincount(degree)).tolist():
+        for k in np.unique(degree[degree >= 0]).tolist():
             for kind in (alone, ~alone):
                 rows = np.flatnonzero((degree == k) & kind)
                 if rows.size:
@@ -471,6 +493,12 @@ class Localizer:
         before = Before(np.unique(self._places(self._states)), self._observations, self._moves)
         noise = f"sigma {degrees(self._noise.sigma):.3g} degrees{'' if self.compass else ', without a compass'}"
         raise empty_belief(self.plane, self._stars, before, look, what, noise, self._unit, compass=self.compass)
+
+
+def _log_total(log_weight: NDArray[np.float64]) -> float:
+    """Return the log of the sum of weights."""
+    top = float(log_weight.max())
+    return top + float(np.log(np.exp(log_weight - top).sum()))
 
 
 def _normal(log_weight: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -20,7 +20,7 @@ from ..robot.walk import checked_drift, checked_sigma
 if TYPE_CHECKING:
     from ..robot.walk import WalkHeader
 
-__all__ = ["CHANCE", "DEFAULT_SIGMA", "LOG_ODDS", "NoiseModel", "sigma_of", "threshold"]
+__all__ = ["CHANCE", "DEFAULT_SIGMA", "LOG_ODDS", "SURE", "NoiseModel", "sigma_of", "threshold"]
 
 CHANCE = 1e-9
 """Chance at which an alternative that is the truth is given up."""
@@ -28,6 +28,9 @@ CHANCE = 1e-9
 LOG_ODDS = -log(CHANCE)
 """Half squared misses above which one alternative is given up against another, and for one or two free angles outright."""
 
+
+SURE = 6.5
+"""Standard deviations that an error stays within but with a chance below 1e-10."""
 
 DEFAULT_SIGMA = radians(5)
 """Standard deviation of a heading where a robot is looked for and neither the caller nor the walk declares one."""
@@ -97,9 +100,6 @@ class NoiseModel:
         return self.sigma > _LARGEST_USEFUL
 
 
-_SURE = 6.5
-"""Standard deviations that an error stays within but with a chance below 1e-9, a two-sided test of two hundred readings."""
+_LARGEST_USEFUL = pi / SURE
 
-_LARGEST_USEFUL = pi / _SURE
-
-_LARGEST_BIAS = pi / _SURE
+_LARGEST_BIAS = pi / SURE

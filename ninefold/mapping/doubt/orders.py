@@ -35,6 +35,9 @@ __all__ = ["StarOrder", "fitted", "star_orders"]
 MOST_ORDERS = 5000
 """Orders of one place up to which they are listed."""
 
+MOST_TRIES = 8 * MOST_ORDERS
+"""Beginnings of an order up to which they are tried."""
+
 THINNEST = 1e-4
 """Radians that two ways of a finished map lie apart at least: an order cannot be told from equal headings."""
 
@@ -85,7 +88,8 @@ def star_orders(
     -------
     tuple or None
         The orders, and the least squared miss of ways from listed exits in standard deviations (0 where lists say nothing);
-        no order at all where legs and lists contradict each other. None where more than `MOST_ORDERS` are open.
+        no order at all where legs and lists contradict each other. None where more than `MOST_ORDERS` are open, or it
+        takes more than `MOST_TRIES` beginnings to tell.
 
     Notes
     -----
@@ -93,9 +97,10 @@ def star_orders(
     """
     k = len(heading)
     found = []
-    for ways, lifts, cost in _by_legs(heading, variance, closes=closes):
-        found.append((ways, lifts, cost))
-        if len(found) > MOST_ORDERS:
+    for tries, order in enumerate(_by_legs(heading, variance, closes=closes)):
+        if order is not None:
+            found.append(order)
+        if len(found) > MOST_ORDERS or tries > MOST_TRIES:
             return None
     if directions is None or not directions.lifts or not closes:
         return sorted((StarOrder(w, x, x, cost) for w, x, cost in found), key=lambda order: order.cost), 0.0
@@ -110,8 +115,8 @@ def star_orders(
 
 def _by_legs(
     heading: Sequence[float], variance: Sequence[float], *, closes: bool
-) -> Iterator[tuple[tuple[int, ...], tuple[float, ...], float]]:
-    """Yield (ways, lifts, cost) of every order that the legs leave open, depth first."""
+) -> Iterator[tuple[tuple[int, ...], tuple[float, ...], float] | None]:
+    """Yield (ways, lifts, cost) of every order that the legs leave open, depth first, and None after any other try."""
     k, first = len(heading), heading[0]
     around = [(yaw - first) % TAU for yaw in heading]
     if k == 1:
@@ -136,9 +141,9 @@ def _by_legs(
         ways, lifts = stack.pop()
         if len(ways) == k:
             cost = _rising_cost(ways, lifts, weight)
-            if cost <= total:
-                yield ways, tuple(first + x for x in lifts), cost
+            yield (ways, tuple(first + x for x in lifts), cost) if cost <= total else None
             continue
+        yield None
         rest = [i for i in range(1, k) if i not in ways]
         for i in reversed(rest):
             for x in choices[i]:

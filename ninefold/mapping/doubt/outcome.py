@@ -13,19 +13,20 @@ from ninefold._wording import counted, quoted
 
 from .doubts import Doubt, doubts_of
 from .exit_lists import averaged, biases
-from .noise import CHANCE, threshold
+from .noise import CHANCE, SURE, threshold
 from .orders import star_orders
 from .reading import settled_reading
 from .ways import bundles, partings, way_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Hashable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from .evidence import Evidence
     from .exit_lists import Directions
     from .noise import NoiseModel
+    from .orders import StarOrder
     from .reading import Reading
     from .ways import Bundle
 
@@ -33,9 +34,6 @@ __all__ = ["Outcome", "outcome_of"]
 
 MOST_READINGS = 64
 """Readings of a walk, legs shared out among ways, up to which all are settled."""
-
-SURE = 6.5
-"""Standard deviations that noise does not reach: a rotation between two samples that much short of half a turn is sure."""
 
 
 ODD = 1e-4
@@ -107,6 +105,7 @@ class _Gathering:
         self.noise, self.evidence, self.variance, self.floor = noise, evidence, variance, floor
         self.directions, self.effort = directions, effort
         self.misses, self.free = 0.0, 0
+        self.listed: dict[Hashable, tuple[list[StarOrder], float] | None] = {}
         for found in directions:
             if found is not None and found.free:
                 self.misses += found.misses / noise.sigma**2
@@ -142,7 +141,7 @@ class _Gathering:
                 names = tuple(self.evidence.places[end] for end in ends)
                 between = " and ".join(map(quoted, names))
                 return self._none_left(f"the headings of the legs between {between} scatter too widely for one way", names)
-            if len(readings) == 1 and len(readings[0]) == 1:
+            if len(readings) == 1 and len(readings[0]) == 1 and not (uncounted and uncounted[-1] is bundle):
                 self.misses += 2 * bundle.scatter(total)
                 self.free += 2 * (len(bundle.legs) - 1)
             if len(readings) > 1:
@@ -153,7 +152,9 @@ class _Gathering:
         for parts in product(*options) if number <= MOST_READINGS else [tuple(each[0] for each in options)]:
             settled.append(self._settled([bundle for group in parts for bundle in group]))
             self.effort -= settled[-1].judged
-        return self._estimated(settled, open_bundles, uncounted, counted_all=number <= MOST_READINGS)
+            if settled[-1].crowded or self.effort <= 0:  # not counted in any case, and the others would take as long
+                break
+        return self._estimated(settled, open_bundles, uncounted, counted_all=len(settled) == number)
 
     def _name(self, place: int) -> str:
         return quoted(self.evidence.places[place])
@@ -168,16 +169,13 @@ class _Gathering:
 
     def _spare(self, bundle: Bundle, room: NDArray[np.float64]) -> int:
         """Return how many more ways than one a bundle may hold."""
-        if bundle.tail == bundle.head:
-            spare = room[bundle.tail] // 2
-        else:
-            spare = min(room[bundle.tail], room[bundle.head])
+        spare = min(room[bundle.tail], room[bundle.head])
         if np.isinf(spare):  # nothing is listed: one way, unless the legs scatter oddly or are named otherwise
             names = {name for leg in bundle.legs.tolist() if (name := self.evidence.edges[leg]) is not None}
             free = 2 * (len(bundle.legs) - 1)
             odd = free and bundle.scatter(self.variance + self.floor) > threshold(free, ODD)
             return max(len(names) - 1, 1 if odd else 0)
-        return int(spare)
+        return int(spare) // 2 if bundle.tail == bundle.head else int(spare)
 
     def _fit_exits(self, parts: tuple[Bundle, ...]) -> bool:
         """Whether the ways of a reading can be matched with listed exits at either end, whatever the other ways are."""
@@ -202,7 +200,8 @@ class _Gathering:
             way_of(part, self.evidence, self.variance, self.floor, coarsest)
             for part in sorted(parts, key=lambda part: int(part.legs[0]))
         ]
-        return settled_reading(self.evidence, self.noise, ways, self.directions, effort=max(self.effort, 0))
+        effort = max(self.effort, 0)
+        return settled_reading(self.evidence, self.noise, ways, self.directions, effort=effort, listed=self.listed)
 
     # -- the answer ----------------------------------------------------------------------------------------------------
 
@@ -221,8 +220,10 @@ class _Gathering:
             if not counted_all or uncounted:
                 return self._uncounted(settled, open_bundles, uncounted)
             return self._none_left(*_failure(settled[0]))
-        misses = self.misses + min(one.misses for one in left)
-        free = self.free + min(left, key=lambda one: one.misses).free
+        misses, free = self.misses, self.free
+        if counted_all and not uncounted:  # else no reading that is settled need be the true one
+            nearest = min(left, key=lambda one: one.misses)
+            misses, free = misses + nearest.misses, free + nearest.free
         scatter = self.noise.sigma * sqrt(misses / free) if free else None
         if free and float(gammaincc(free / 2, misses / 2)) < CHANCE:
             return self._none_left("the readings scatter more than that", (), scatter)

@@ -20,7 +20,7 @@ from .quotient_sat import QuotientSat
 from .quotients import QuotientSearch
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
 
@@ -71,7 +71,15 @@ class ClosedMaps(NamedTuple):
     exact: bool
 
 
-def closed_maps(tree: WalkTree, alike: Likeness, *, until: float, most: int, most_places: int | None = None) -> ClosedMaps:
+def closed_maps(
+    tree: WalkTree,
+    alike: Likeness,
+    *,
+    until: float,
+    most: int,
+    most_places: int | None = None,
+    report: Callable[[int], object] | None = None,
+) -> ClosedMaps:
     """Find the closed maps of a walk.
 
     Parameters
@@ -82,6 +90,8 @@ def closed_maps(tree: WalkTree, alike: Likeness, *, until: float, most: int, mos
         Maps to keep.
     most_places
         Places of a map at most.
+    report
+        Called with the number of maps found so far, now and then.
     """
     search = _Search(tree, alike, most, most_places)
     cost = triples(node_pairs(tree, alike)) * CLAUSE_SECONDS if tree.compass else np.inf
@@ -97,6 +107,8 @@ def closed_maps(tree: WalkTree, alike: Likeness, *, until: float, most: int, mos
                     return ClosedMaps(sat.kept.maps(), sat.kept.count, exact=True)
             else:
                 search.step()
+            if report is not None:
+                report(max(search.best().count, 0 if sat is None else sat.kept.count))
     finally:
         if sat is not None:
             sat.close()

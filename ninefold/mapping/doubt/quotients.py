@@ -67,15 +67,16 @@ class QuotientSearch:
         self._state = _quotient(tree, alike, closed=closed, turning=turning, most_places=most_places)
         if fails is not None:
             self._state.node[:, kernels.FAILS] = fails
-        count, width = tree.heading.shape
+        count = tree.n_nodes
         self._control = np.zeros(6, np.int64)
         self._control[kernels.GOING_DOWN] = 1
-        self._frame = np.zeros((count + 2, 5), np.int64)
-        self._choice = np.zeros((count + 2) * (count * width + 2) if count < 64 else count * 256 + 4096, np.int64)
+        depth = max(count, int((tree.other >= 0).sum()) // 2) + 2  # more ways than nodes, where claims made nodes one
+        self._frame = np.zeros((depth, 5), np.int64)
+        self._choice = np.empty(depth * (int(tree.degree.sum()) + 2), np.int64)  # pages not used take no memory
         self._best = np.zeros(self._state.option.size, np.int64)
         place = kernels.place_made(self._state, root)
-        self._possible = bool(kernels.put(self._state, root, place, 0))
-        if not self._possible:
+        possible = kernels.put(self._state, root, place, 0) and alike.shifts.diagonal().all()  # a node differs from itself
+        if not possible:
             self._control[kernels.DONE] = 1
 
     @property
@@ -125,12 +126,13 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
     node[:, kernels.SIGN] = alike.signature
     node[:, kernels.UNITS] = (walked.sum(axis=1) + 1) // 2
     node[:, kernels.GROUP] = alike.group
-    way = np.zeros((count * width, 4), np.int64)
+    way = np.zeros((count * width, 5), np.int64)
     way[:, kernels.OTHER] = tree.other.reshape(-1)
     way[:, kernels.BACK] = tree.back.reshape(-1)
     way[:, kernels.KIND] = alike.kind.reshape(-1)
     turn = np.where(walked, np.abs(tree.turn) + _slack(tree, alike), 0.0)
     way[:, kernels.LENGTH] = np.ceil(turn.reshape(-1) / kernels.MICRO).astype(np.int64)
+    way[:, kernels.BEYOND] = _edges_beyond(tree).reshape(-1)
     angle = np.zeros((count * width, 2))
     angle[:, kernels.HEADING] = np.nan_to_num(tree.heading).reshape(-1)
     angle[:, kernels.TURN] = tree.turn.reshape(-1)
@@ -141,15 +143,15 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
     number[kernels.RELATIVE] = not tree.compass
     number[kernels.CLOSED] = closed
     number[kernels.STRICT] = turning
-    limit = np.array([4 * tree.tolerance + 1e-9, most_places or places], np.float64)
+    limit = np.array([tree.tolerance, most_places or places], np.float64)
     start, candidate = _candidates(tree, alike)
     return kernels.Quotient(
         node,
         way,
         angle,
         alike.shifts,
-        np.zeros((places, 4), np.int64),
-        np.full((places * width, 5), -1, np.int64),
+        np.zeros((places, 5), np.int64),
+        np.full((places * width, 6), -1, np.int64),
         np.zeros((places * width, 2)),
         kind,
         sign,
@@ -159,7 +161,7 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
         limit,
         np.zeros(count, np.int64),
         np.zeros((int(alike.group.max(initial=-1)) + 1, 2), np.int64),
-        np.zeros((8 * count + 16, 3), np.int64),
+        np.zeros((max(8 * count, int(walked.sum())) + 16, 3), np.int64),
         np.zeros(places * width + 2, np.int64),
         np.zeros(places * width + 2),
         np.zeros(places * width + 2, np.int64),
@@ -167,6 +169,17 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
         start,
         candidate,
     )
+
+
+def _edges_beyond(tree: WalkTree) -> NDArray[np.int64]:
+    """Return how many edges of the tree one comes to by an exit, its own included, (N, K); 0 where nobody walked."""
+    size = np.ones(tree.n_nodes, np.int64)
+    parent = np.where(tree.other >= 0, tree.other, tree.n_nodes).min(axis=1)  # nodes are numbered in the order visited
+    for n in range(tree.n_nodes - 1, 0, -1):
+        size[parent[n]] += size[n]
+    down = tree.other > np.arange(tree.n_nodes)[:, None]
+    up = ~down & (tree.other >= 0)
+    return np.where(down, size[tree.other], np.where(up, tree.n_nodes - size[:, None], 0))
 
 
 def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from itertools import count
-from math import log, pi
+from itertools import count, product
+from math import log, pi, prod
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,12 +20,13 @@ from ..checks import face_labels, face_permutation
 from ..plane import PlaneMap
 from ..turning import corner_angles
 from .legality import Arrangement
+from .noise import LOG_ODDS
 from .orders import StarOrder, fitted, star_orders
 from .settling import Settled, Star, settle
 from .whole_turns import misses_by_outer_face, outer_faces, settled_turns
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Hashable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -38,6 +39,9 @@ __all__ = ["Found", "Reading", "settled_reading"]
 
 MOST_FACES = 3000
 """Faces up to which the outer one is found by likelihood: a dense matrix of their covariances."""
+
+MOST_LIFTED = 64
+"""Orders of one rotation up to which they are weighed against each other, where whole turns are not certain."""
 
 
 class Found(NamedTuple):
@@ -69,6 +73,8 @@ class Reading:
         Places of which more orders are open than can be listed; the reading is then not settled.
     cost
         Of the reading itself: a penalty for every way, so that a likeliest map is not the one with the most ways.
+    untold
+        Whether maps were left out because their outer face could not be told, among so many.
     """
 
     evidence: Evidence
@@ -83,6 +89,7 @@ class Reading:
     free: int = 0
     crowded: tuple[int, ...] = ()
     cost: float = 0.0
+    untold: bool = False
 
     @property
     def judged(self) -> int:
@@ -148,20 +155,46 @@ class Reading:
         if not self.noise.wanders or not self.ways:
             yield 0.0, plane(np.where(np.abs(fitted_turn - read) < pi / 2, read, fitted_turn))
             return
-        faces = self._faces(after, heading)
-        if faces[2] > MOST_FACES:
-            return
-        miss = self._misses_by_outer_face(faces)
-        for face in outer_faces(miss).tolist():
-            yield float(miss[face]), plane(settled_turns(*faces, fitted_turn, face))
+        for face, (miss, lifted) in self._by_outer_face(numbers).items():
+            _, heading, moved = self._stars(lifted)
+            fitted_turn = turn + moved[1::2] - moved[0::2]
+            yield miss, plane(settled_turns(*self._faces(after, heading), fitted_turn, face))
+
+    def _by_outer_face(self, numbers: Mapping[int, int]) -> dict[int, tuple[float, dict[int, int]]]:
+        """Return the outer faces that one rotation can have, the likeliest first: half squared miss, and its orders.
+
+        Orders of one rotation may differ in which corner is the wide one; all are weighed. None is returned where there
+        are too many to tell.
+        """
+        alike = [
+            [n for n, order in enumerate(self.orders[place]) if order.ways == self.orders[place][number].ways]
+            for place, number in numbers.items()
+        ]
+        if prod(map(len, alike)) > MOST_LIFTED:
+            self.untold = True
+            return {}
+        found: dict[int, tuple[float, dict[int, int]]] = {}
+        for picked in product(*alike):
+            lifted = dict(zip(numbers, picked, strict=True))
+            after, heading, _ = self._stars(lifted)
+            faces = self._faces(after, heading)
+            if faces[2] > MOST_FACES:
+                self.untold = True
+                return {}
+            miss = self._misses_by_outer_face(faces)
+            for face in outer_faces(miss).tolist():
+                if face not in found or miss[face] < found[face][0]:
+                    found[face] = float(miss[face]), lifted
+        least = min(miss for miss, _ in found.values())
+        near = {face: each for face, each in found.items() if each[0] <= least + LOG_ODDS}
+        return dict(sorted(near.items(), key=lambda each: each[1][0]))
 
     def outer_faces(self) -> int:
         """Return the number of faces that can be the outer one of the likeliest map, 0 if they are too many to tell."""
-        choices = [factor.get(0) for factor in self.settled.factors] if self.settled is not None else []
-        orders = dict(pair for choice in choices if choice for pair in choice.orders)
-        after, heading, _ = self._stars(orders)
-        faces = self._faces(after, heading)
-        return len(outer_faces(self._misses_by_outer_face(faces))) if faces[2] <= MOST_FACES else 0
+        if self.settled is None or self.settled.failure is not None or not self.ways:
+            return 1
+        choices = [factor.get(0) for factor in self.settled.factors]
+        return len(self._by_outer_face(dict(pair for choice in choices if choice for pair in choice.orders)))
 
     def _stars(self, numbers: Mapping[int, int]) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
         """Return the rotation, headings that fit it, and how far those are moved from the means of the legs."""
@@ -225,6 +258,7 @@ def settled_reading(
     directions: Sequence[Directions | None],
     *,
     effort: int,
+    listed: dict[Hashable, tuple[list[StarOrder], float] | None],
 ) -> Reading:
     """List the orders at every place and settle them.
 
@@ -236,6 +270,8 @@ def settled_reading(
         (V,) what the lists of a place say, None where there are none.
     effort
         As in `settle`.
+    listed
+        The orders of places that other readings of the walk have listed; most places are the same in all of them.
     """
     darts: list[list[int]] = [[] for _ in evidence.places]
     for e, way in enumerate(ways):
@@ -248,7 +284,10 @@ def settled_reading(
     for place, here in enumerate(darts):
         if not here:
             continue
-        found = star_orders(heading[here].tolist(), variance[here].tolist(), directions[place], closes=not noise.useless)
+        evidence_here = tuple(heading[here].tolist()), tuple(variance[here].tolist())
+        if (place, evidence_here) not in listed:
+            listed[place, evidence_here] = star_orders(*evidence_here, directions[place], closes=not noise.useless)
+        found = listed[place, evidence_here]
         if found is None:
             crowded.append(place)
             continue

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass, field
-from itertools import count, pairwise, product
+from itertools import chain, count, pairwise, product
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,7 +29,7 @@ from ..checks import face_labels, face_permutation
 from ..heading import TAU
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -113,10 +113,14 @@ class Factor:
         Where more than one order was open when the search began.
     count
         Number of choices that make different maps, None where the search was stopped.
+    outer
+        The most outer faces that choices of one and the same rotation have: which of two corners is the wide one, or how
+        often a way turns round, may be open where no order is.
     """
 
     places: tuple[int, ...]
     count: int | None
+    outer: int
     _source: Iterator[Choice]
     _made: list[Choice] = field(default_factory=list)
 
@@ -252,12 +256,15 @@ class _Search:
                     kinds = {id(kind): kind for _, combination, _ in solutions.made for kind in (combination[i],)}
                     kept = list(kinds.values()) if whole else variable.kinds
                     left[variable.place] = [star.number for star in _distinct([s for k in kept for s in k.members])]
-            factors.append(Factor(places, number, _choices(group, solutions)))
+            if not whole:  # the likeliest first may take for ever: any that is legal, the likeliest alternatives tried first
+                solutions = _Replayed(chain(solutions.made, self._solutions(group, openly, dive=True)))
+            outer = _most_outer(solutions.made)
+            factors.append(Factor(places, number, outer, _choices(group, solutions, in_order=whole)))
         for variable in self.variables:
             if len(variable.kinds) == 1:
                 if variable.place < 0:
                     only = variable.kinds[0]
-                    factors.append(Factor((), 1, iter([Choice(0.0, (), ((variable.edge, only.number),), ())])))
+                    factors.append(Factor((), 1, 1, iter([Choice(0.0, (), ((variable.edge, only.number),), ())])))
                     continue
                 members = _distinct(variable.kinds[0].members)
                 left[variable.place] = [star.number for star in members]
@@ -380,9 +387,12 @@ class _Search:
     # -- search --------------------------------------------------------------------------------------------------------
 
     def _solutions(
-        self, group: list[_Variable], openly: list[_Variable]
+        self, group: list[_Variable], openly: list[_Variable], *, dive: bool = False
     ) -> Iterator[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]:
-        """Yield the legal combinations of a group, the likeliest first, each with the darts outside; None after a try."""
+        """Yield the legal combinations of a group, each with the darts outside, and None after a try.
+
+        The likeliest comes first; or, to `dive`, whichever is reached soonest from the likeliest beginnings.
+        """
         arrangement = self.arrangement
         held = np.zeros(self.core.size, np.int64)
         inside = {id(variable) for variable in group}
@@ -397,9 +407,9 @@ class _Search:
         for i in range(len(group) - 1, -1, -1):
             rest[i] = rest[i + 1] + min(kind.cost for kind in group[i].kinds)
         number = count()
-        heap: list[tuple[float, int, tuple[_Kind, ...], tuple[int, ...]]] = [(rest[0], next(number), (), ())]
+        heap: list[tuple[int, float, int, tuple[_Kind, ...], tuple[int, ...]]] = [(0, rest[0], next(number), (), ())]
         while heap:
-            cost, _, combination, outer = heapq.heappop(heap)
+            _, cost, _, combination, outer = heapq.heappop(heap)
             depth = len(combination)
             if depth == len(group):
                 yield cost, combination, outer
@@ -412,15 +422,16 @@ class _Search:
                 found = arrangement.judge(keep)
                 if found is not None:
                     bound = cost - rest[depth] + kind.cost + rest[depth + 1]
-                    heapq.heappush(heap, (bound, next(number), (*combination, kind), found))
+                    rank = -depth - 1 if dive else 0
+                    heapq.heappush(heap, (rank, bound, next(number), (*combination, kind), found))
             yield None
 
 
 class _Replayed:
     """Solutions as they are found, kept for those who ask later."""
 
-    def __init__(self, source: Iterator[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]) -> None:
-        self.source = source
+    def __init__(self, source: Iterable[tuple[float, tuple[_Kind, ...], tuple[int, ...]] | None]) -> None:
+        self.source = iter(source)
         self.made: list[tuple[float, tuple[_Kind, ...], tuple[int, ...]]] = []
 
     def more(self) -> bool:
@@ -443,15 +454,15 @@ class _Replayed:
             i += 1
 
 
-def _choices(group: list[_Variable], solutions: _Replayed) -> Iterator[Choice]:
-    """Yield the choices of a group, the likeliest first, each map once."""
+def _choices(group: list[_Variable], solutions: _Replayed, *, in_order: bool) -> Iterator[Choice]:
+    """Yield the choices of a group, each map once; the likeliest first, if the solutions come so."""
     source = iter(solutions)
     ahead = next(source, None)
     number = count()
     heap: list[tuple[float, int, tuple[int, ...], tuple[_Kind, ...], tuple[int, ...]]] = []
     seen = set()
     while heap or ahead is not None:
-        while ahead is not None and (not heap or ahead[0] <= heap[0][0]):
+        while ahead is not None and (not heap or (in_order and ahead[0] <= heap[0][0])):
             cost, combination, outer = ahead
             for kind in combination:
                 kind.members.sort(key=lambda star: star.cost)
@@ -492,6 +503,14 @@ def _number_of_maps(solutions: list[tuple[float, tuple[_Kind, ...], tuple[int, .
     return total
 
 
+def _most_outer(solutions: list[tuple[float, tuple[_Kind, ...], tuple[int, ...]]]) -> int:
+    """Return the most outer faces that solutions of one rotation have, 1 where there is no solution."""
+    outer: dict[tuple[tuple[int, ...], ...], set[tuple[int, ...]]] = {}
+    for _, combination, darts in solutions:
+        outer.setdefault(tuple(kind.order for kind in combination), set()).add(darts)
+    return max(map(len, outer.values()), default=1)
+
+
 def _distinct(stars: Sequence[Star]) -> list[Star]:
     """Return the likeliest star of every order, the likeliest first."""
     found: dict[tuple[int, ...], Star] = {}
@@ -503,7 +522,7 @@ def _distinct(stars: Sequence[Star]) -> list[Star]:
 def _free_factor(place: int, members: list[Star]) -> Factor:
     """Return a place whose orders are all legal whatever the others are."""
     choices = iter([Choice(star.cost, ((place, star.number),), (), ()) for star in members])
-    return Factor((place,) if len(members) > 1 else (), len(members), choices)
+    return Factor((place,) if len(members) > 1 else (), len(members), 1, choices)
 
 
 def _restricted(star: Star, kept: Callable[[int], bool]) -> tuple[tuple[int, ...], tuple[float, ...]]:

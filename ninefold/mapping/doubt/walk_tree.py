@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -111,8 +112,8 @@ class WalkTree:
 class _Growing:
     """A tree in the making: lists a node long."""
 
-    def __init__(self, tolerance: float, *, compass: bool, unit: Unit) -> None:
-        self.tolerance, self.compass, self.unit = tolerance, compass, unit
+    def __init__(self, tolerance: float, *, compass: bool, unit: Unit, first: int) -> None:
+        self.tolerance, self.compass, self.unit, self.first = tolerance, compass, unit, first
         self.exits: list[list[float]] = []
         self.ways: list[list[tuple[int, int, float] | None]] = []
         self.names: list[str | None] = []
@@ -126,13 +127,15 @@ class _Growing:
         return len(self.exits) - 1
 
 
-def fold(walk: Walk, *, tolerance: float | None = None) -> WalkTree:
+def fold(walk: Walk, *, tolerance: float | None = None, first: int = 0) -> WalkTree:
     """Fold a walk.
 
     Parameters
     ----------
     tolerance
         Radians within which two headings may be of one exit, instead of the header's.
+    first
+        Which number a contradiction gives to the first visit: of a stretch of a longer walk, its number there, from 0.
 
     Raises
     ------
@@ -146,7 +149,7 @@ def fold(walk: Walk, *, tolerance: float | None = None) -> WalkTree:
     """
     unit = unit_of(walk.header.heading)
     allowed = walk.header.tolerance if tolerance is None else tolerance
-    tree = _Growing(allowed, compass=walk.header.compass, unit=unit)
+    tree = _Growing(allowed, compass=walk.header.compass, unit=unit, first=first)
     reader = LegReader(unit)
     node_of: list[int] = []
     shift_of: list[int] = []
@@ -207,30 +210,37 @@ def _step(
         node_of.append(there)
         shift_of.append(0)
         return None
-    there, back, _ = way
-    before = tree.seen[there]
+    there, back, turn = way
+    before, now = tree.first + tree.seen[there], tree.first + visit
     count = len(tree.exits[there])
     if len(exits) != count:
         return Contradiction(
             before,
-            visit,
-            f"visit {visit + 1} must be the place of visit {before + 1}, which lists {counted(count, 'exit')} and not "
+            now,
+            f"visit {now + 1} must be the place of visit {before + 1}, which lists {counted(count, 'exit')} and not "
             f"{len(exits)}",
         )
     shift = (back - reached) % count
     if not _alike(exits, tree.exits[there], shift, tree.tolerance, compass=tree.compass):
         return Contradiction(
             before,
-            visit,
-            f"visit {visit + 1} must be the place of visit {before + 1}, whose exits lie at "
+            now,
+            f"visit {now + 1} must be the place of visit {before + 1}, whose exits lie at "
             f"{tree.unit.headings(tree.exits[there])} and not at {tree.unit.headings(exits)}",
+        )
+    if not abs(leg.turn - turn) < (pi if tree.compass else 2 * tree.tolerance + 1e-9):
+        return Contradiction(
+            tree.first + tree.seen[max(here, there)] - 1,
+            now,
+            f"visit {now + 1} must be the place of visit {before + 1}, and the way there turns by {tree.unit.angle(turn)} "
+            f"and not by {tree.unit.angle(leg.turn)}",
         )
     if name is not None:
         if tree.names[there] not in (None, name):
             return Contradiction(
                 before,
-                visit,
-                f"visit {visit + 1}, called {quoted(name)}, must be the place of visit {before + 1}, called "
+                now,
+                f"visit {now + 1}, called {quoted(name)}, must be the place of visit {before + 1}, called "
                 f"{quoted(tree.names[there])}",
             )
         tree.names[there] = name
@@ -277,7 +287,8 @@ def _alike(exits: list[float], others: list[float], shift: int, tolerance: float
     misses = [wrap(others[(i + shift) % count] - yaw) for i, yaw in enumerate(exits)]
     if compass:
         return all(abs(miss) <= tolerance for miss in misses)
-    return all(abs(wrap(miss - misses[0])) <= tolerance for miss in misses)
+    apart = [wrap(miss - misses[0]) for miss in misses]  # some common turn takes all of them within the tolerance
+    return max(apart) - min(apart) <= 2 * tolerance
 
 
 def _tree(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import TAU, wrap
 from .evidence import wrap_all
 from .noise import LOG_ODDS, threshold
 
@@ -29,6 +29,10 @@ __all__ = ["Bundle", "Way", "bundles", "partings", "way_of"]
 
 MOST_PARTINGS = 512
 """Readings of one bundle as several ways up to which they are listed."""
+
+
+_SAME = 1e-9
+"""Radians within which a heading is one that was read, whole turns apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +74,18 @@ class Bundle:
             self.felt[which],
             self.weight[which],
         )
+
+    def along_first(self, evidence: Evidence) -> Bundle:
+        """Return the bundle seen in the direction of its own first leg; a part may be seen in that of another way's."""
+        first = int(self.legs[0])
+        if self.tail == self.head:
+            along = abs(wrap(float(self.out[0] - evidence.out[first]))) < _SAME
+            along &= abs(float(self.turn[0] - evidence.turn[first])) < _SAME
+        else:
+            along = int(evidence.at[first]) == self.tail
+        if along:
+            return self
+        return Bundle(self.head, self.tail, self.legs, self.back, self.out, -self.turn, -self.felt, self.weight)
 
     def scatter(self, variance: NDArray[np.float64]) -> float:
         """Return half the squared misses of the legs from their mean, in standard deviations of one reading."""
@@ -250,10 +266,20 @@ def partings(
             trial = [*group, k]
             labels = np.array(trial)
             members = np.flatnonzero(labels == k)
-            if len(members) > 1 and bundle.part(members).scatter(variance) > threshold(2 * (n - 1)):
+            if len(members) > 1 and not _all_near(bundle, members[:-1], i, variance):
                 continue
-            stack.append(trial)
+            parts = tuple(bundle.part(np.flatnonzero(labels == one)) for one in range(max(trial) + 1))
+            free = 2 * (len(trial) - len(parts))
+            if not free or sum(part.scatter(variance) for part in parts) <= threshold(free):
+                stack.append(trial)
     return found
+
+
+def _all_near(bundle: Bundle, members: NDArray[np.int64], leg: int, variance: NDArray[np.float64]) -> bool:
+    """Whether a leg of a bundle is near each of some others, as two legs of one way are but for a chance of 1e-9."""
+    out, back = bundle.out[members] - bundle.out[leg], bundle.back[members] - bundle.back[leg]
+    own = float(bundle.weight[leg])
+    return bool(_near(out, back, bundle.tail, bundle.head, variance, bundle.weight[members], own).all())
 
 
 def way_of(
@@ -272,6 +298,7 @@ def way_of(
     coarsest
         Rotation between two samples up to which noise cannot have turned its sense, radians.
     """
+    bundle = bundle.along_first(evidence)
     n = len(bundle.legs)
     out, back = float(bundle.out.mean()), float(bundle.back.mean())
     whole = np.rint((bundle.back - pi - bundle.out - bundle.turn) / TAU).astype(np.int64)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..heading import TAU
+from ..turning import face_totals, face_turns
 from .noise import LOG_ODDS
 
 if TYPE_CHECKING:
@@ -51,10 +52,7 @@ def misses_by_outer_face(
     All faces together turn as Euler's formula says, whatever the errors, so one of them tells nothing new and is left out.
     Complexity O(E + F cubed) for the dense solve, O(E + F squared) memory.
     """
-    total = np.pi - corner[next_face]
-    total[0::2] += turn
-    total[1::2] -= turn
-    turned = np.bincount(face_of, weights=total, minlength=n_faces)
+    turned = face_totals(next_face, face_of, n_faces, corner, turn)
     left, right = face_of[0::2], face_of[1::2]
     apart = left != right
     covariance = np.zeros((n_faces, n_faces))
@@ -100,12 +98,9 @@ def settled_turns(
     -----
     What a face lacks is handed on along a spanning tree of the dual graph, from its leaves to its root. Complexity O(E).
     """
-    total = np.pi - corner[next_face]
-    total[0::2] += turn
-    total[1::2] -= turn
     lacks = np.ones(n_faces, np.int64)
     lacks[outer] = -1
-    lacks -= np.rint(np.bincount(face_of, weights=total, minlength=n_faces) / TAU).astype(np.int64)
+    lacks -= face_turns(next_face, face_of, n_faces, corner, turn)
     moved = turn.copy()
     left, right = face_of[0::2].tolist(), face_of[1::2].tolist()
     across: list[list[int]] = [[] for _ in range(n_faces)]

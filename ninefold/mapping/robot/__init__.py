@@ -4,6 +4,8 @@
 `walk`         `Walk`: visits to places and the heading samples between them, as they come
 `legs`         what the samples of one leg say: heading on leaving, heading on arriving, net rotation
 `mapper`       `Mapper`: one event after another becomes a plane map that is valid at every moment
+`open_map`     `OpenMap`: what a robot knows while it explores, with the exits that nobody has walked
+`strategies`   `Strategy`, and three that walk everything: where to go next, from what is known
 `simulated`    `SimulatedWorld`, `explore`: a robot that walks through a source with geometry
 =============  ==================================================================================================
 

@@ -269,8 +269,8 @@ class Mapper:
         place, memory = event.place, self._memory
         if place is None:
             raise WalkError(
-                "a place that was not recognised (null); one map needs every place named, so name it or leave the walk "
-                "out from here"
+                "a place that was not recognised (null); one map needs every place named: name it, or let `ninefold "
+                "hypotheses` find every map that explains the walk"
             )
         if self._at < 0:
             if event.edge is not None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import sqrt
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
@@ -17,23 +17,31 @@ from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
 from ..heading import Heading
-from . import _tours
+from .open_map import OPEN, OpenMap, checked_exit
+from .strategies import DepthFirst, NearestFirst, WallFollowing
 from .walk import DEFAULT_TOLERANCE, Event, Samples, Visit, Walk, WalkHeader, checked_drift, checked_sigma
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from .simulated_world import SimulatedWorld
+    from .strategies import Strategy
 
 __all__ = ["DRIFT_KEPT", "Exploration", "Tour", "explore"]
 
-Tour: TypeAlias = Literal["depth-first", "covering"]
+Tour: TypeAlias = Literal["depth-first", "covering", "wall"]
 
 DRIFT_KEPT = 0.966
 """Share of the compass bias that is kept from one place to the next: half of it is left after 20 legs."""
 
 _MOST_SAMPLES = 1e8
-_TOURS = {"depth-first": _tours.depth_first, "covering": _tours.covering}
+_TOURS: dict[str, Callable[[np.random.Generator | None], Strategy]] = {
+    "depth-first": DepthFirst,
+    "covering": NearestFirst,
+    "wall": WallFollowing,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +77,12 @@ def explore(
     metres: bool = False,
     tolerance: float | None = None,
     drift: float = 0.0,
-    tour: Tour = "depth-first",
+    tour: Tour | Strategy = "depth-first",
     tours: int = 1,
     ordered_exits: bool = False,
+    places: bool = True,
 ) -> Exploration:
-    """Walk a world until every place that can be reached is visited and every way there walked.
+    """Walk a world until every place that can be reached is visited and every way there walked, or a strategy is done.
 
     Parameters
     ----------
@@ -96,12 +105,17 @@ def explore(
         of the leg that led there, the first of the leg that leads on. At most pi. From place to place it keeps the share
         `DRIFT_KEPT` and gains noise of its own, so that its spread stays the same; along a leg it changes evenly.
     tour
-        ``"depth-first"``, or ``"covering"``: always to the nearest way not yet walked.
+        ``"depth-first"``; ``"covering"``: always to the nearest way not yet walked; ``"wall"``: with the wall on the right
+        hand, and from a wall followed before to the nearest way not yet walked. Or a `Strategy`, which is given the map so
+        far as a robot has it whose compass does not err, and walks until it gives no exit.
     tours
-        How often every way is to be walked anew; each tour begins where the one before ended.
+        How often every way is to be walked anew; each tour begins where the one before ended. 1 for a strategy.
     ordered_exits
         List the exits in their true order, counter-clockwise and beginning anywhere, and let the header say so. Otherwise,
         where headings err, they are in the order of the headings seen.
+    places
+        False leaves the names of places and ways out of the log. The named tours still go where a robot goes that recognises
+        every place; a strategy gets a map in which every open exit has led to a new place.
 
     Returns
     -------
@@ -133,10 +147,13 @@ def explore(
         raise BadInput(f"step is a positive number of metres, not {quoted(step)}")
     sigma = _checked_noise(noise)
     drift = checked_drift(drift)
-    if tour not in get_args(Tour):
-        raise BadInput(f"a tour is {' or '.join(map(repr, get_args(Tour)))}, not {quoted(tour)}")
+    if not callable(tour) and tour not in _TOURS:
+        *others, last = map(repr, _TOURS)
+        raise BadInput(f"a tour is {', '.join(others)} or {last}, not {quoted(tour)}")
     if isinstance(tours, bool) or not isinstance(tours, int) or tours < 1:
         raise BadInput(f"tours is how often to walk every way, 1 or more, not {quoted(tours)}")
+    if callable(tour) and tours != 1:
+        raise BadInput(f"a strategy makes one tour, not {tours}; make a new one and start where this one ended")
     if (most := tours * world.metres / step) > _MOST_SAMPLES:
         raise BadInput(
             f"a step of {step:g} m takes {most:.2g} samples over {tours * world.metres:.3g} m of ways; take a longer step"
@@ -150,9 +167,15 @@ def explore(
         tolerance = min(DEFAULT_TOLERANCE, world.narrowest / 3)
     rng = np.random.default_rng(seed)
     compass = _Compass(rng, sigma or 0.0, drift)
-    looks = _Looks(exits=exits, in_order=ordered_exits, metres=metres, step=step)
-    robot = _Robot(world, compass, looks, rng if seed is not None else None)
-    robot.run(first, int(ways[home].sum()), tour, tours)
+    looks = _Looks(exits=exits, in_order=ordered_exits, metres=metres, step=step, places=places)
+    choosing = rng if seed is not None else None
+    robot = _Robot(world, compass, looks, choosing)
+    if callable(tour):
+        robot.run(first, tour, recognises=places)
+    else:
+        at = first
+        for _ in range(tours):
+            at = robot.run(at, _TOURS[tour](choosing), recognises=True)
     names = world.vertex_names
     header = WalkHeader(
         tolerance=tolerance,
@@ -183,12 +206,13 @@ def _checked_noise(noise: float) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class _Looks:
-    """What the robot notes: exits, whether in their true order, the metres of every leg; and metres between two samples."""
+    """What the robot notes: exits, whether in their true order, metres, places; and the metres between two samples."""
 
     exits: bool
     in_order: bool
     metres: bool
     step: float
+    places: bool
 
 
 class _Compass:
@@ -227,44 +251,65 @@ class _Robot:
         self.ends = world.edges.reshape(-1).tolist()
         self.events: list[Event] = []
         self.metres = 0.0
-        self._legs: dict[int, tuple[Samples, float]] = {}
+        self._legs: dict[int, tuple[Samples, float, float]] = {}
         self._stars: dict[int, tuple[Heading, ...]] = {}
 
-    def run(self, start: int, ways: int, tour: Tour, tours: int) -> None:
-        """Explore from a vertex whose component has so many ways, tour after tour."""
+    def run(self, start: int, strategy: Strategy, *, recognises: bool) -> int:
+        """Explore from a vertex until the strategy is done; return the vertex where that is."""
+        known = OpenMap()
+        darts: list[int] = []  # of every exit
+        place: dict[int, int] = {}  # of every vertex recognised
         at = start
-        for number in range(tours):
-            darts = _TOURS[tour](self.world, at, ways, self.rng)
-            dart = next(darts, None)  # what the robot will do first is settled before it looks round
-            if not number:
-                self._visit(at, None)
-            while dart is not None:
-                self._go(dart)
-                at = self.ends[dart ^ 1]
-                dart = next(darts, None)
+        self._see(known, darts, place, at)
+        chosen = strategy(known)  # what the robot will do first is settled before it looks round
+        if not self.events:
+            self._visit(at, None)
+        while chosen is not None:
+            dart = darts[checked_exit(known, chosen)]
+            turned = self._go(dart)
+            at = self.ends[dart ^ 1]
+            if known.mate[chosen] == OPEN:
+                if not recognises or at not in place:
+                    self._see(known, darts, place, at)
+                exits = known.exits(place[at])
+                known.join(chosen, exits[darts[exits.start : exits.stop].index(dart ^ 1)], turned)
+            known.arrive(known.mate[chosen])
+            chosen = strategy(known)
+        return at
 
-    def _go(self, dart: int) -> None:
+    def _see(self, known: OpenMap, darts: list[int], place: dict[int, int], vertex: int) -> None:
+        """Add a place for a vertex to what is known."""
+        exits = self.world.darts_at(vertex)
+        name = self.world.vertex_names[vertex] if self.looks.places else None
+        place[vertex] = known.see(self.world.heading[exits].tolist(), name)
+        darts += exits
+
+    def _go(self, dart: int) -> float:
+        """Go along a dart; return the net rotation."""
         self.compass.travel()
-        samples, metres = self._samples(dart)
+        samples, metres, turned = self._samples(dart)
         self.metres += metres
         self.events.append(samples)
         self._visit(self.ends[dart ^ 1], dart >> 1)
+        return turned
 
-    def _samples(self, dart: int) -> tuple[Samples, float]:
+    def _samples(self, dart: int) -> tuple[Samples, float, float]:
         known = self._legs.get(dart)
         if known is None:
             yaw, metres = self.world.sampled(dart, self.looks.step)
+            turned = float(yaw[-1] - yaw[0])
             read = self.compass.along(yaw)
-            known = Samples(tuple(read.tolist()), metres=metres if self.looks.metres else None), metres
+            known = Samples(tuple(read.tolist()), metres=metres if self.looks.metres else None), metres, turned
             if self.compass.exact:
                 self._legs[dart] = known
         return known
 
     def _visit(self, vertex: int, edge: int | None) -> None:
         names = self.world.edge_names
-        name = None if edge is None or names.are_rows else names[edge]
+        unnamed = edge is None or names.are_rows or not self.looks.places
         exits = self._exits(vertex) if self.looks.exits else None
-        self.events.append(Visit(self.world.vertex_names[vertex], exits, name))
+        place = self.world.vertex_names[vertex] if self.looks.places else None
+        self.events.append(Visit(place, exits, None if unnamed or edge is None else names[edge]))
 
     def _exits(self, vertex: int) -> tuple[Heading, ...]:
         known = self._stars.get(vertex)

@@ -1,0 +1,155 @@
+"""Whether some legal map holds given mergers of nodes: the search of `quotients` on a walk with these nodes made one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ninefold.errors import NotPlane
+
+from .hypotheses import Hypothesis
+from .likeness import can_be_one, likeness
+from .quotients import QuotientSearch
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .walk_tree import WalkTree
+
+__all__ = ["merged", "some_map"]
+
+ROOTS = 6
+"""Nodes that a search begins with in turn."""
+
+FIRST_DECISIONS = 500
+"""Decisions of the first round; every round has `GROWTH` times as many."""
+
+GROWTH = 4
+
+SLICE = 128
+"""Decisions between two looks at the clock."""
+
+
+def some_map(
+    tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], *, closed: bool, until: float
+) -> Hypothesis | bool | None:
+    """Return a legal map in which nodes of one place are one; False if there is none, None if time is up.
+
+    Parameters
+    ----------
+    place, shift
+        (N,) a congruent quotient of the tree: exit x of a node is exit x + shift of the first node of its place.
+    closed
+        Whether no exit may be left untravelled.
+    until
+        When to give up, by the monotonic clock.
+    """
+    one = Hypothesis(tree, place, shift, closed=_is_closed(tree, place, shift))
+    if (one.closed or not closed) and _is_legal(one):
+        return one
+    if monotonic() > until:
+        return None
+    small = merged(tree, place, shift)
+    alike = likeness(small)
+    spread = np.unique(np.linspace(0, small.n_nodes - 1, ROOTS).astype(int)).tolist()
+    fails: NDArray[np.int64] | None = None
+    decisions = FIRST_DECISIONS
+    while True:
+        for root in spread:
+            search = QuotientSearch(small, alike, root=root, closed=closed, fails=fails)
+            while not search.done and search.decisions < decisions:
+                for found in search.more(min(SLICE, decisions - search.decisions)):
+                    whole = _unfolded(tree, place, shift, found)
+                    if _is_legal(whole) and _is_alike(whole):
+                        return whole
+                if monotonic() > until:
+                    return None
+            if search.done:
+                return False
+            fails = search.fails
+        decisions *= GROWTH
+
+
+def merged(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> WalkTree:
+    """Return a walk with its nodes made places: no tree any more where a way closes, and else as before.
+
+    The exits of a place are those of its first node.
+    """
+    lead = np.unique(place, return_index=True)[1]
+    count, width = lead.size, tree.heading.shape[1]
+    other = np.full((count, width), -1, np.int64)
+    back = np.full((count, width), -1, np.int64)
+    turn = np.zeros((count, width))
+    n, x = np.nonzero(tree.other >= 0)
+    m, y = tree.other[n, x], tree.back[n, x]
+    here, there = (x + shift[n]) % tree.degree[n], (y + shift[m]) % tree.degree[m]
+    order = np.argsort(-n, kind="stable")  # the first node that walked an exit is written last, and stays
+    n, x, m, here, there = n[order], x[order], m[order], here[order], there[order]
+    other[place[n], here] = place[m]
+    back[place[n], here] = there
+    turn[place[n], here] = tree.turn[n, x]
+    # both ends of a way keep the turn of one leg
+    a, z = np.nonzero(other >= 0)
+    b, w = other[a, z], back[a, z]
+    mirrored = (b > a) | ((b == a) & (w > z))
+    turn[b[mirrored], w[mirrored]] = -turn[a[mirrored], z[mirrored]]
+    names: list[str | None] = [None] * count
+    for node, name in enumerate(tree.names):
+        if name is not None:
+            names[place[node]] = name
+    node_of = tree.node_of
+    return replace(
+        tree,
+        degree=tree.degree[lead],
+        heading=tree.heading[lead],
+        other=other,
+        back=back,
+        turn=turn,
+        node_of=place[node_of],
+        shift_of=(tree.shift_of + shift[node_of]) % np.maximum(tree.degree[node_of], 1),
+        taken=(tree.taken + shift[node_of[:-1]]) % np.maximum(tree.degree[node_of[:-1]], 1),
+        names=tuple(names),
+    )
+
+
+def _unfolded(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], found: NDArray[np.int64]) -> Hypothesis:
+    """Return a quotient of the merged walk as one of the walk itself, places in the order of their first visits."""
+    raw, turned = found[place, 0], shift + found[place, 1]
+    _, first, number = np.unique(raw, return_index=True, return_inverse=True)
+    rank = np.empty(first.size, np.int64)
+    rank[np.argsort(first, kind="stable")] = np.arange(first.size)
+    number = rank[number]
+    lead = np.sort(first)
+    turned = (turned - turned[lead[number]]) % np.maximum(tree.degree, 1)
+    return Hypothesis(tree, number, turned, closed=_is_closed(tree, number, turned))
+
+
+def _is_legal(one: Hypothesis) -> bool:
+    try:
+        _ = one.plane
+    except NotPlane:
+        return False
+    return True
+
+
+def _is_alike(one: Hypothesis) -> bool:
+    """Whether any two nodes of a place can be one; the search compared first nodes alone."""
+    order = np.argsort(one.place, kind="stable")
+    for nodes in np.split(order, np.flatnonzero(np.diff(one.place[order])) + 1):
+        degree = int(one.tree.degree[nodes[0]])
+        i, j = np.triu_indices(nodes.size, 1)
+        n, m = nodes[i], nodes[j]
+        if i.size and not can_be_one(one.tree, n, m, (one.shift[n] - one.shift[m]) % max(degree, 1)).all():
+            return False
+    return True
+
+
+def _is_closed(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> bool:
+    width = tree.heading.shape[1]
+    n, x = np.nonzero(tree.other >= 0)
+    used = np.unique(place[n] * width + (x + shift[n]) % tree.degree[n])
+    lead = np.unique(place, return_index=True)[1]
+    return used.size == int(tree.degree[lead].sum())
