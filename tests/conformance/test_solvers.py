@@ -8,8 +8,10 @@ import sys
 
 import numpy as np
 import pytest
+from dratify import check_proof, parse_dimacs
 
 from ninefold.encodings import DEFAULT_SOLVER, SOLVERS, open_solver
+from ninefold.encodings.sat import refutation
 from ninefold.errors import BadInput, UnknownName
 
 ALL = pytest.mark.parametrize("name", SOLVERS)
@@ -157,3 +159,35 @@ def test_interrupt_key_is_a_keyboard_interrupt(name):
     done = subprocess.run([sys.executable, "-c", INTERRUPTED, name], capture_output=True, text=True, check=True)
     assert done.stdout == "interrupted\n"
     assert done.stderr == ""
+
+
+# -- refutations ----------------------------------------------------------------------------------------------------------
+
+
+def accepted(clauses, proof):
+    header = f"p cnf {max(abs(x) for clause in clauses for x in clause)} {len(clauses)}\n"
+    text = header + "".join(" ".join(map(str, [*clause, 0])) + "\n" for clause in clauses)
+    found = check_proof(parse_dimacs(text), proof.decode())
+    return found.ok and found.reached_empty
+
+
+def test_a_refutation_is_accepted_by_a_foreign_checker():
+    rng = np.random.default_rng(5)
+    refuted = 0
+    for _ in range(60):
+        clauses = list(random_clauses(rng, 8, 36))
+        proof = refutation(clauses)
+        with open_solver(clauses=clauses) as solver:
+            assert (proof is None) == solver.solve()
+        if proof is not None:
+            assert accepted(clauses, proof)
+            refuted += 1
+    assert refuted > 10
+    holes = list(pigeons(5))
+    assert accepted(holes, refutation(holes))
+    assert not accepted(holes, b"0\n")
+    assert refutation([[1], []]) == b"0\n"
+
+
+def test_a_refutation_keeps_its_budget():
+    assert refutation(pigeons(12), budget=0.05) is None

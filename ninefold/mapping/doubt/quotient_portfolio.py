@@ -37,13 +37,13 @@ FIRST_DECISIONS = 2000
 
 GROWTH = 4
 
-AT_ONCE = 512
-"""Decisions between two looks at the clock."""
+FIRST_SLICE = 16
+"""Decisions before the first look at the clock."""
 
 SLICE = 0.1
-"""Seconds of the solver between two looks at the search."""
+"""Seconds that the search or the solver has at once, about."""
 
-EQUAL = 5.0
+EQUAL = 3.0
 """Seconds that the solver may take as fast as the search does; afterwards it has a quarter of the time."""
 
 CLAUSE_SECONDS = 1e-6
@@ -134,7 +134,7 @@ class _Kept:
         for one in maps:
             key = _rank(self.tree, one)
             self.count += key not in self._maps
-            self._maps[key] = one
+            self._maps[key] = one.copy()
         if len(self._maps) > 2 * self.most + 1000:
             self._shorten()
 
@@ -168,6 +168,7 @@ class _Search:
         self.turn = 0
         self.fails: NDArray[np.int64] | None = None
         self.most_found = _Kept(tree, most)
+        self._at_once = FIRST_SLICE
         self._begin()
 
     def _begin(self) -> None:
@@ -188,9 +189,11 @@ class _Search:
                 self.decisions *= GROWTH
             self._begin()
         if not self.done:
-            self.kept.add(self.search.more(min(self.decisions - self.search.decisions, AT_ONCE)))
+            self.kept.add(self.search.more(min(self.decisions - self.search.decisions, self._at_once)))
             self.done = self.search.done
-        self.seconds += monotonic() - begun
+        took = monotonic() - begun
+        self.seconds += took
+        self._at_once = max(1, min(2 * self._at_once, int(self._at_once * SLICE / max(took, 1e-6))))
 
     def best(self) -> _Kept:
         """Return what the root that found most has found."""
