@@ -369,3 +369,30 @@ def test_no_claims_are_no_trouble():
     assert (found.claims, found.rejected, found.kept, found.cost) == ((), (), (), 0)
     assert found.exact
     assert found.map.n_places == len(set(true))
+
+
+def test_where_no_closed_map_explains_the_walk_no_claim_is_blamed():
+    ahead, behind = Heading.from_degrees(0), Heading.from_degrees(180)
+    events = [Visit(None, (ahead, behind)), Samples.of(ahead), Visit(None, (ahead, behind))]
+    events += [Samples.of(ahead), Visit(None, (behind,))]
+    found = claims(Walk(WalkHeader(), tuple(events)), [(0, 1, 1.0)], closed=True)
+    assert found.rejected == ()
+    assert found.contradiction.text == "no closed plane map explains the walk, whatever is claimed"
+
+
+def test_when_maps_are_hard_to_find_all_are_listed_and_no_claim_is_blamed_by_guess():
+    walk, true = grid_walk(6, 6, 5)
+    rng = random.Random(5)
+    said, _ = mixed(walk, true, 8, 0, 5)
+    pairs = [(i, j) for i, j in alike(walk) if true[i] != true[j]]
+    rng.shuffle(pairs)
+    bad = []
+    for pair in pairs:
+        if len(bad) < 3 and not claims(walk, [*said, *((*one, 0.6) for one in [*bad, pair])], budget=0).rejected:
+            bad.append(pair)
+    given = [*said, *((*one, 0.6) for one in bad)]
+    found = claims(walk, given, closed=True)
+    assert pairs_of(found) == set(bad)
+    assert found.exact
+    spent = claims(walk, given, closed=True, budget=0)
+    assert (spent.exact, spent.rejected, spent.map) == (False, (), None)

@@ -65,6 +65,7 @@ def files(tmp_path):
     nf.draw(source.to_map()).save(tmp_path / "map.svg")
     net.add("a", "b", "DC")
     (tmp_path / "proof.log").write_text(nf.check(net, proof=True).proof.to_text())
+    (tmp_path / "graph.g2o").write_text("# drive 7\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     nouns = {
         "walk.jsonl": "a walk log",
         "house.atlas": "an atlas",
@@ -75,6 +76,7 @@ def files(tmp_path):
         "table.csv": "a table of relations",
         "map.svg": "a picture",
         "proof.log": "a proof of inconsistency",
+        "graph.g2o": "a pose graph",
     }
     return {tmp_path / name: noun for name, noun in nouns.items()}
 
@@ -86,6 +88,7 @@ def files(tmp_path):
         (nf.read_walk, {"a walk log"}),
         (nf.read_network, {"a relation network"}),
         (read_source, {"lines in GeoJSON"}),
+        (nf.io.read_pose_graph, {"a pose graph"}),
         (lambda path: Atlas.open(path).close(), {"an atlas"}),
     ],
 )
@@ -120,11 +123,9 @@ def test_a_new_format_is_one_entry(monkeypatch, tmp_path):
     import ninefold.io.formats as formats
 
     entry = formats.Format(
-        "g2o", "a pose graph", (".g2o",), lambda head: head.startswith(b"VERTEX_SE2"), (), "`ninefold claims FILE` reads it"
+        "shapes", "a shape", (".shp",), lambda head: head.startswith(b"SHAPE"), (), "`ninefold shapes FILE` reads it"
     )
     monkeypatch.setattr(formats, "FORMATS", (*FORMATS, entry))
-    (tmp_path / "net.csv").write_text("VERTEX_SE2 0 1 2 3\n")
-    with pytest.raises(
-        BadInput, match=r"net\.csv: this is a pose graph, not a relation network .*; `ninefold claims .*net.csv`"
-    ):
+    (tmp_path / "net.csv").write_text("SHAPE 0 1 2 3\n")
+    with pytest.raises(BadInput, match=r"net\.csv: this is a shape, not a relation network .*; `ninefold shapes .*net.csv`"):
         nf.read_network(tmp_path / "net.csv")

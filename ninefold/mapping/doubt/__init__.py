@@ -26,6 +26,14 @@ Every step keeps what it cannot exclude at those odds: an order that noise could
 be two ways, a whole turn that was sampled too coarsely. What falls falls by genus and turning, which pass from a map to its
 parts and so never exclude the truth.
 
+**Who is right?** Of claims that visits are the same places, `claims` rejects the cheapest so that the rest can be right.
+
+=============  ==================================================================================================
+`claims`       `claims` and `Claims`: the cheapest to reject, each with its reason
+=============  ==================================================================================================
+
+``_congruence`` has what follows from claims, with reasons; ``_held`` asks whether some legal map holds them.
+
 **Where on it?** A robot that was switched on somewhere looks at exits and moves, and the belief over the places of a map is
 exact under the declared noise.
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .walk_tree import WalkTree
 
-__all__ = ["merged", "some_map"]
+__all__ = ["every_closed_map", "merged", "some_map"]
 
 ROOTS = 6
 """Nodes that a search begins with in turn."""
@@ -69,6 +69,38 @@ def some_map(
                     return None
             if search.done:
                 return False
+            fails = search.fails
+        decisions *= GROWTH
+
+
+def every_closed_map(
+    tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], *, until: float, most: int
+) -> list[Hypothesis] | None:
+    """Return all legal maps that leave no exit untravelled, as `some_map` returns one.
+
+    Returns
+    -------
+    list or None
+        None if time is up, or there are more than `most`.
+    """
+    small = merged(tree, place, shift)
+    alike = likeness(small)
+    spread = np.unique(np.linspace(0, small.n_nodes - 1, ROOTS).astype(int)).tolist()
+    fails: NDArray[np.int64] | None = None
+    decisions = FIRST_DECISIONS
+    while True:
+        for root in spread:
+            search = QuotientSearch(small, alike, root=root, closed=True, fails=fails)
+            maps: list[Hypothesis] = []
+            while not search.done and search.decisions < decisions:
+                whole = (
+                    _unfolded(tree, place, shift, found) for found in search.more(min(SLICE, decisions - search.decisions))
+                )
+                maps += [one for one in whole if _is_legal(one) and _is_alike(one)]
+                if monotonic() > until or len(maps) > most:
+                    return None
+            if search.done:
+                return maps
             fails = search.fails
         decisions *= GROWTH
 

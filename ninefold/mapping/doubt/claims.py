@@ -36,7 +36,8 @@ from ninefold.errors import BadInput
 from ..robot.units import unit_of
 from ..robot.walk import Walk
 from ._congruence import Assertion, Congruence, Core, core_of
-from ._held import some_map
+from ._held import every_closed_map, some_map
+from .hypotheses import Hypothesis
 from .likeness import can_be_one
 from .walk_tree import Contradiction, WalkTree, fold
 
@@ -47,7 +48,6 @@ if TYPE_CHECKING:
 
     from ..robot.units import Unit
     from ._congruence import Clash
-    from .hypotheses import Hypothesis
 
 __all__ = ["Claim", "Claims", "Rejection", "claims"]
 
@@ -59,6 +59,12 @@ TRIES = 12
 
 LEAST_SECONDS = 5.0
 """What a choice of the cheapest claims may take even if the budget is spent; after that they are chosen without a search."""
+
+MOST_MAPS = 1000
+"""Maps that are listed at most, so that claims can be held against each."""
+
+FIRST_SHARE = 30
+"""The part of the budget after which a search with all claims gives way to one for all maps."""
 
 LISTED = 6
 """Claims that a reason lists."""
@@ -124,7 +130,7 @@ class Claims:
         A legal map that holds all others; None where none is known.
     exact
         Whether nothing cheaper can be rejected so that some legal map holds the rest. False where the budget was spent: then
-        every rejection stands by congruence or by a search that came to its end, and more may be wrong.
+        claims are rejected by congruence, and those that no legal map holds even alone, and more may be wrong.
     contradiction
         Why no map explains the walk even without any claim, where that shows in a stretch of it.
     """
@@ -293,7 +299,9 @@ class _Judging:
             self._readings.append(list(range(first, len(self._assertions))))
         self._congruence = Congruence(tree, _facts(tree))
         self._cores: list[Core] = []
-        self._cheapest = True
+        self._cheapest = self._searching = True
+        self._maps: list[Hypothesis] | None = None
+        self._listed = False
 
     def judged(self) -> Claims:
         """Alternate between the cheapest choice and what speaks against it."""
@@ -307,14 +315,48 @@ class _Judging:
             chosen = self._choice()
             found = self._clashing(chosen)
             one: Hypothesis | bool | None = None
+            if not found and self._searching:
+                one = self._map_of(chosen)
+                core = self._blamed(list(chosen.values())) if one is False else None
+                if core == ():
+                    return Claims(tree, self._said, (), None, exact=False, contradiction=self._hopeless())
+                if core is not None:
+                    found = [Core(core, None)]
+                elif not isinstance(one, Hypothesis):
+                    # what no search has told apart is not held against single claims
+                    self._searching = False
+                    self._cores = [core for core in self._cores if core.clash is not None or len(core.members) == 1]
+                    continue
             if not found:
-                one = self._map(chosen.values())
-                if one is False and chosen:
-                    found = [Core(self._blamed(list(chosen.values())), None)]
-            if not found:
-                told = one if not isinstance(one, bool) else None
-                return Claims(tree, self._said, self._rejections(chosen), told, exact=one is not None and self._cheapest)
+                told = one if isinstance(one, Hypothesis) else None
+                exact = told is not None and self._cheapest
+                return Claims(tree, self._said, self._rejections(chosen), told, exact=exact)
             self._cores += found
+
+    def _hopeless(self) -> Contradiction:
+        kind = "closed plane map" if self._closed else "plane map"
+        text = f"no {kind} explains the walk, whatever is claimed"
+        return Contradiction(0, self._tree.n_visits - 1, text)
+
+    def _map_of(self, chosen: dict[int, int]) -> Hypothesis | bool | None:
+        """Return a legal map that holds chosen assertions; False if there is none, None if time is up.
+
+        Where that is not told soon and no exit is untravelled, all maps are listed, for every later question too.
+        """
+        now = monotonic()
+        one = self._map(chosen.values(), until=now + (self._until - now) / FIRST_SHARE)
+        if isinstance(one, Hypothesis) or self._maps is not None:
+            return one
+        if self._closed and not self._listed:
+            self._listed = True
+            self._congruence.reset()
+            now = monotonic()
+            self._maps = every_closed_map(
+                self._tree, *self._congruence.places(), until=now + (self._until - now) / 2, most=MOST_MAPS
+            )
+            if self._maps is not None:
+                return self._map(chosen.values(), until=now)
+        return self._map(chosen.values(), until=self._until) if one is None else one
 
     def _choice(self) -> dict[int, int]:
         if not self._cores and all(self._readings):
@@ -368,29 +410,35 @@ class _Judging:
     def _score(self, assertion: int) -> float:
         return self._said[self._owner[assertion]].score
 
-    def _map(self, chosen: Iterable[int]) -> Hypothesis | bool | None:
+    def _map(self, chosen: Iterable[int], *, until: float) -> Hypothesis | bool | None:
         """Return a legal map that holds assertions, False if there is none, None if time is up."""
+        said = [self._assertions[k] for k in chosen]
+        if self._maps is not None:
+            return next((one for one in self._maps if all(_holds(one, *assertion) for assertion in said)), False)
         self._congruence.reset()
-        if not self._congruence.assert_all((k, self._assertions[k]) for k in chosen):
+        if not self._congruence.assert_all(enumerate(said)):
             return False
         place, shift = self._congruence.places()
-        return some_map(self._tree, place, shift, closed=self._closed, until=self._until)
+        return some_map(self._tree, place, shift, closed=self._closed, until=until)
 
-    def _blamed(self, chosen: list[int]) -> tuple[int, ...]:
-        """Return some of the assertions that no legal map holds together; none is superfluous unless time ran out."""
+    def _blamed(self, chosen: list[int]) -> tuple[int, ...] | None:
+        """Return some of the assertions that no legal map holds together, none superfluous; None if time ran out."""
         needed: list[int] = []
         left = list(chosen)
         size = max(1, len(left) // 2)
         while left:  # as many at once as can be left out, then half as many, and so on
             part, rest = left[:size], left[size:]
-            if self._map([*needed, *rest]) is False:
+            one = self._map([*needed, *rest], until=self._until)
+            if one is None:
+                return None
+            if one is False:
                 left = rest
                 size = max(1, min(2 * size, len(left)))
-            elif size == 1:
+            elif len(part) == 1:
                 needed += part
                 left = rest
             else:
-                size //= 2
+                size = len(part) // 2
         return tuple(sorted(needed))
 
     # -- words -------------------------------------------------------------------------------------------------------------
@@ -468,6 +516,12 @@ class _Judging:
     def _visit(self, node: int) -> int:
         """Return the first visit of a node."""
         return int(np.argmax(self._tree.node_of == node))
+
+
+def _holds(one: Hypothesis, n: int, m: int, shift: int) -> bool:
+    """Whether two nodes are one place of a map under a shift."""
+    turned = int(one.shift[m]) + shift - int(one.shift[n])
+    return bool(one.place[n] == one.place[m]) and turned % max(int(one.tree.degree[n]), 1) == 0
 
 
 def _shifts(tree: WalkTree, n: int, m: int) -> list[int]:
