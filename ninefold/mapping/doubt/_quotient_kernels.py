@@ -161,7 +161,7 @@ def count_way(q, n, x, change):  # type: ignore[no-untyped-def]
 
 @kernel
 def count_between(q, stub, change):  # type: ignore[no-untyped-def]
-    """Count the ways between nodes that were placed before the stub they lead through is decided; there are none in a tree."""
+    """Count the ways between nodes placed before the stub they lead through is decided; there are none in a tree."""
     width = q.exit.shape[0] // q.place.shape[0]
     n = q.place[stub // width, FIRST]
     while n >= 0:
