@@ -100,12 +100,12 @@ def pieces() -> None:
 
 def district() -> None:
     """The whole district, its names forgotten; 80 % unique in 60 s each, median 2 s, and never a wrong one are asked for."""
-    title("district, names removed, 10 degrees, closed", "unique", "wrong", "no answer", "median", "worst")
+    title("district, names removed, 10 degrees, closed", "unique", "several", "wrong", "no answer", "median", "worst")
     world = samples.load("helsinki_district").to_world()
     every: list[float] = []
     total = 0
     for tour, seeds in (("depth-first", 20), ("covering", 10)):
-        seconds, wrong, unknown = [], 0, 0
+        seconds, several, wrong, unknown = [], 0, 0, 0
         for seed in range(seeds):
             named = explore(world, seed=seed, tour=tour, step=10.0).walk  # type: ignore[arg-type]
             walk = without_names(Walk(WalkHeader(tolerance=radians(10)), named.events))
@@ -115,11 +115,12 @@ def district() -> None:
             elif found.count == 1 and same_places(found.maps[0].visits.tolist(), named.places):
                 seconds.append(spent)
             else:
+                several += found.count > 1
                 wrong += found.count <= 1
-        row(tour, f"{len(seconds)}/{seeds}", wrong, unknown, *spread(seconds))
+        row(tour, f"{len(seconds)}/{seeds}", several, wrong, unknown, *spread(seconds))
         every += seconds
         total += seeds
-    row("both", f"{len(every)}/{total}", "", "", *spread(every))
+    row("both", f"{len(every)}/{total}", "", "", "", *spread(every))
 
 
 def first_call() -> None:

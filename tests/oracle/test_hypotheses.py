@@ -22,7 +22,7 @@ from alike import (
 from ninefold._kernels import Kernel
 from ninefold.errors import WalkError
 from ninefold.mapping import Heading, Samples, Visit, Walk, WalkHeader, hypotheses
-from ninefold.mapping.doubt.likeness import likeness
+from ninefold.mapping.doubt.likeness import can_be_one, likeness
 from ninefold.mapping.doubt.quotients import QuotientSearch
 from ninefold.mapping.doubt.walk_tree import WalkTree, fold
 from tests.oracle.hypotheses_reference import Quotient, all_quotients
@@ -375,3 +375,27 @@ def test_a_way_back_that_turns_otherwise_contradicts_the_way_there(compass):
     assert (found.count, found.exact) == (0, True)
     assert (found.contradiction.first, found.contradiction.last) == (0, 2)
     assert "visit 3 must be the place of visit 1, and the way there turns by" in found.contradiction.text
+
+
+@pytest.mark.parametrize("compass", [True, False])
+def test_pairs_alone_are_as_alike_as_in_the_table(compass):
+    different = 0
+    for seed in range(40):
+        world = piece(seed, 8)
+        walk = observed(
+            world, covering_walk(world, seed), compass=compass, tolerance=radians(20), noise=radians(2), seed=seed
+        )
+        trees = [fold(walk_of_turns(pi, pi, -pi, pi, compass=compass))]
+        try:
+            trees.append(fold(walk))
+        except WalkError:
+            continue
+        for tree in trees:
+            table = likeness(tree).shifts
+            for k in range(int(tree.degree.max())):
+                n, m = np.nonzero(tree.degree[:, None] + 0 * tree.degree[None, :] > k)
+                found = can_be_one(tree, n, m, np.full(n.size, k))
+                off = n != m
+                assert (found == (table[n, m] >> k & 1).astype(bool))[off].all()
+                different += int((~found).sum())
+    assert different

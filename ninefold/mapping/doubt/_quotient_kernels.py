@@ -41,7 +41,7 @@ STUBS, ENDS, COMPONENT, SIDE = 0, 1, 2, 3
 # columns of `sign`, kinds of its exits after them
 UNITS_LEFT, DEMAND, DEGREE_OF_SIGN, KINDS = 0, 1, 2, 3
 # rows of `number`
-N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT = 0, 1, 2, 3, 4, 5
+N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT, WORK = 0, 1, 2, 3, 4, 5, 6
 # rows of `limit`
 TOLERANCE, MOST_PLACES = 0, 1
 # rows of `control`, how the search stands
@@ -82,7 +82,7 @@ class Quotient(NamedTuple):
     surplus: NDArray[np.int64]
     """(S, B): exits of one side beyond those of the other, per component."""
     number: NDArray[np.int64]
-    """(6,): places, length of the trail, microradians that edges not placed can turn, flags."""
+    """(7,): places, length of the trail, microradians that edges not placed can turn, flags; ends looked at so far."""
     limit: NDArray[np.float64]
     """(2,): tolerance, radians; most places."""
     trail: NDArray[np.int64]
@@ -427,6 +427,7 @@ def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
     turn = q.angle[walked, TURN]
     degree = q.node[m, DEGREE]
     judged = q.number[STRICT] == 1 and q.number[RELATIVE] == 0
+    q.number[WORK] += met
     found = 0
     end = -1
     if q.node[m, PLACE] >= 0:  # no tree, where claims made nodes one: what lies beyond may be placed already

@@ -3,6 +3,15 @@
 A hypothesis is a quotient of the walk's visits: same places merged, each exit used by one way, congruent along the exits
 walked. It is legal when every face of the walked part turns +1 and exactly one -1, as `PlaneMap` demands. It is closed when
 no exit is left untravelled. See `walk_tree` for how a walk is folded, and `quotients` for the search.
+
+With a compass a face turns a whole number of times, whichever visits' headings its corners are read from. Without one the
+corners and legs of a face add up to a whole turn only nearly, and agreement within a tolerance is not transitive. So it is
+fixed what is held against what. Lists of exits, and legs along one way, are compared in pairs: any two visits of a place
+(one for all that folding makes the same) have headings that some turn of the one list brings within the tolerance of the
+other, and any two legs have net turns within twice the tolerance, a leg being two readings. A face is measured with the
+exits of the first visit of each of its places and the first leg along each of its ways; it turns +1 or -1 if that is so
+within the tolerance for every corner and leg, and by less than half a turn. Nothing of this depends on where a search
+begins.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ different kinds are different.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -92,8 +92,7 @@ def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift
     Parameters
     ----------
     n, m, shift
-        (P,) int64: exit x of node n would be exit x + shift of node m. Without a compass either node may be the one that the
-        other's headings are turned to.
+        (P,) int64: exit x of node n would be exit x + shift of node m.
 
     Notes
     -----
@@ -102,22 +101,17 @@ def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift
     degree = tree.degree[n]
     exits = np.arange(tree.heading.shape[1])
     there = (exits + shift[:, None]) % np.maximum(degree, 1)[:, None]
-    miss = tree.heading[m[:, None], there] - tree.heading[n]
     real = exits < degree[:, None]
-    frames = [miss]
+    miss = tree.heading[m[:, None], there] - tree.heading[n]
     if not tree.compass:
-        first = (-shift) % np.maximum(degree, 1)
-        frames = [miss - miss[:, :1], miss - miss[np.arange(n.size), first][:, None]]
-    found = np.zeros(n.size, np.bool_)
-    for off in frames:
-        off = off - TAU * np.round(off / TAU)
-        found |= (np.where(real, np.abs(off), 0.0) <= tree.tolerance + 1e-12).all(axis=1)
-    found &= tree.degree[m] == degree
-    here = np.broadcast_to(exits, there.shape)
-    row, column = np.nonzero(real & (tree.other[n] >= 0) & (tree.other[m[:, None], there] >= 0) & found[:, None])
-    ways = _ways_alike(tree, n[row], here[row, column], m[row], there[row, column])
-    found[row[~ways]] = False
-    return found
+        miss -= miss[:, :1]
+    miss = np.where(real, miss - TAU * np.round(miss / TAU), 0.0)
+    if tree.compass:
+        found = np.abs(miss).max(axis=1) <= tree.tolerance + EPSILON
+    else:
+        found = np.ptp(miss, axis=1) <= 2 * tree.tolerance + EPSILON
+    agree = _legs_agree(tree, (n[:, None], exits), (m[:, None], there))
+    return np.asarray(found & (agree | ~real).all(axis=1) & (tree.degree[m] == degree))
 
 
 def _groups(count: int, same: list[tuple[int, int]]) -> NDArray[np.int64]:
@@ -155,42 +149,30 @@ def _shifts(tree: WalkTree) -> NDArray[np.int64]:
             else:
                 agree = np.ptp(miss, axis=2) <= 2 * tree.tolerance + EPSILON
             for x in range(degree):
-                agree &= _walked_alike(tree, nodes, x, (x + k) % degree)
+                agree &= _legs_agree(tree, (nodes[:, None], x), (nodes[None, :], (x + k) % degree))
             bits |= agree.astype(np.int64) << k
         found[np.ix_(nodes, nodes)] = bits
     np.fill_diagonal(found, 1)
     return found
 
 
-def _walked_alike(tree: WalkTree, nodes: NDArray[np.int64], x: int, y: int) -> NDArray[np.bool_]:
-    """Whether the way out of exit x of one node can be that out of exit y of another, (M, M); so where one is not walked."""
-    first, second = np.flatnonzero(tree.other[nodes, x] >= 0), np.flatnonzero(tree.other[nodes, y] >= 0)
-    agree = np.ones((nodes.size, nodes.size), np.bool_)
-    agree[np.ix_(first, second)] = _ways_alike(tree, nodes[first][:, None], x, nodes[second][None, :], y)
-    return agree
+def _legs_agree(tree: WalkTree, one: tuple[Any, Any], two: tuple[Any, Any]) -> NDArray[np.bool_]:
+    """Whether ways out of exits, given as (nodes, exits), can be those out of others; so where one is not walked."""
+    if tree.compass:
+        near = tree.heading[two] - tree.heading[one]
+        far = tree.heading[tree.other[two], tree.back[two]] - tree.heading[tree.other[one], tree.back[one]]
+        off = _settled(tree, two) - _settled(tree, one)
+        off += near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
+        agree = np.abs(off) < np.pi
+    else:
+        agree = np.abs(tree.turn[two] - tree.turn[one]) <= 2 * tree.tolerance + EPSILON
+    return np.asarray(agree | (tree.other[one] < 0) | (tree.other[two] < 0))
 
 
-def _ways_alike(
-    tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int, m: NDArray[np.int64], y: NDArray[np.int64] | int
-) -> NDArray[np.bool_]:
-    """Whether ways that were walked out of exits x of nodes n turn as those out of exits y of nodes m; arrays broadcast.
-
-    With a compass they turn by as many whole turns, whatever the headings at their ends differ by; without, about alike.
-    """
-    if not tree.compass:
-        return np.asarray(np.abs(tree.turn[m, y] - tree.turn[n, x]) <= 2 * tree.tolerance + EPSILON)
-    off = _settled(tree, m, y) - _settled(tree, n, x)
-    far = tree.heading[tree.other[m, y], tree.back[m, y]] - tree.heading[tree.other[n, x], tree.back[n, x]]
-    near = tree.heading[m, y] - tree.heading[n, x]
-    off = off + near - TAU * np.round(near / TAU) - far + TAU * np.round(far / TAU)
-    return np.asarray(np.abs(off) < np.pi)
-
-
-def _settled(tree: WalkTree, n: NDArray[np.int64], x: NDArray[np.int64] | int) -> NDArray[np.float64]:
-    """Return the turn along the way out of an exit as the headings at its two ends have it."""
-    turn = tree.turn[n, x]
-    miss = tree.heading[tree.other[n, x], tree.back[n, x]] + np.pi - tree.heading[n, x] - turn
-    return np.asarray(turn + miss - TAU * np.round(miss / TAU))
+def _settled(tree: WalkTree, exits: tuple[Any, Any]) -> NDArray[np.float64]:
+    """Return the turns along the ways out of some exits as the headings at their ends have them."""
+    miss = tree.heading[tree.other[exits], tree.back[exits]] + np.pi - tree.heading[exits] - tree.turn[exits]
+    return np.asarray(tree.turn[exits] + miss - TAU * np.round(miss / TAU))
 
 
 def _kinds(tree: WalkTree, shifts: NDArray[np.int64]) -> tuple[NDArray[np.int64], int]:

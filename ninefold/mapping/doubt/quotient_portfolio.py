@@ -1,8 +1,8 @@
 """Every closed map of a folded walk: the search by faces and the SAT solver, in turn, until one has come to its end.
 
 Grids, where everything looks alike, yield to the search and not to SAT; long walks in irregular worlds the reverse, and
-which it will be is not known before. The search begins with one node after another, with growing numbers of decisions, as
-the node it begins with decides how long it takes. The solver starts once the search has taken as long as laying out its
+which it will be is not known before. The search begins with one node after another, with growing shares of work, as the
+node it begins with decides how long it takes. The solver starts once the search has taken as long as laying out its
 clauses will take, then both have equal time, and the solver a quarter after `EQUAL` seconds. Both find all maps, so the
 answer does not depend on which is first; where more maps are found than are kept, those with the fewest places are, and then
 by the numbers of their places.
@@ -32,8 +32,8 @@ __all__ = ["ClosedMaps", "closed_maps"]
 ROOTS = 8
 """Nodes that the search begins with in turn."""
 
-FIRST_DECISIONS = 2000
-"""Decisions of the first round; every round has `GROWTH` times as many."""
+FIRST_WORK = 1_000_000
+"""Work of each search of the first round, in ends of ways looked at; every round has `GROWTH` times as much."""
 
 GROWTH = 4
 
@@ -161,8 +161,8 @@ class _Search:
     def __init__(self, tree: WalkTree, alike: Likeness, most: int, most_places: int | None) -> None:
         self.tree, self.alike, self.most, self.most_places = tree, alike, most, most_places
         spread = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist()
-        self.roots = [spread[0], spread[-1], *spread[1:-1]] if len(spread) > 2 else spread
-        self.decisions = FIRST_DECISIONS
+        self.roots = spread[::-1]  # at the end of a walk most is known: there the search is quicker, and often quickest
+        self.work = FIRST_WORK
         self.seconds = 0.0
         self.done = False
         self.turn = 0
@@ -181,15 +181,15 @@ class _Search:
 
     def step(self) -> None:
         begun = monotonic()
-        if self.search.decisions >= self.decisions:
+        if self.search.work >= self.work:
             self.fails = self.search.fails
             self.most_found = self.best()
             self.turn += 1
             if self.turn % len(self.roots) == 0:
-                self.decisions *= GROWTH
+                self.work *= GROWTH
             self._begin()
         if not self.done:
-            self.kept.add(self.search.more(min(self.decisions - self.search.decisions, self._at_once)))
+            self.kept.add(self.search.more(self._at_once))
             self.done = self.search.done
         took = monotonic() - begun
         self.seconds += took

@@ -90,6 +90,11 @@ class QuotientSearch:
         return int(self._control[kernels.N_FOUND])
 
     @property
+    def work(self) -> int:
+        """Ends of ways looked at so far: what takes the time, counted alike on every machine."""
+        return int(self._state.number[kernels.WORK])
+
+    @property
     def done(self) -> bool:
         """Whether the search has come to its end: then `found` is the number of quotients."""
         return bool(self._control[kernels.DONE])
@@ -138,7 +143,7 @@ def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, m
     angle[:, kernels.TURN] = tree.turn.reshape(-1)
     sign, bend = _signatures(tree, alike, node)
     kind, surplus = _sides(tree, alike, sign)
-    number = np.zeros(6, np.int64)
+    number = np.zeros(7, np.int64)
     number[kernels.TURN_LEFT] = int(way[:, kernels.LENGTH].sum()) // 2
     number[kernels.RELATIVE] = not tree.compass
     number[kernels.CLOSED] = closed
