@@ -9,7 +9,7 @@ from lookalikes import covering, laps, unrecognised
 
 from ninefold.errors import BadInput, TooLarge
 from ninefold.io import samples
-from ninefold.mapping import Completeness, Walk, WalkHeader, explore, hypotheses, listed_maps
+from ninefold.mapping import Completeness, Heading, Samples, Visit, Walk, WalkHeader, explore, hypotheses, listed_maps
 
 
 def accepted(found):
@@ -57,6 +57,16 @@ def test_pairs_that_are_known():
     pair = next((j, i) for i in range(len(places)) for j in range(i - 2) if places[i] == places[j])
     every = hypotheses(walk).count
     assert confirmed(walk, None, same=[pair]) + confirmed(walk, None, differ=[pair]) == every
+
+
+def test_legs_that_turn_differently_went_different_ways():
+    """Once straight on and once round in a spiral: places where the way on differs by a whole turn are two."""
+    yaw = [Heading.from_degrees(d) for d in (0, 90, 180, 270, 0)]
+    place = Visit(None, exits=(yaw[0], yaw[2]))
+    straight, spiral = Samples.of(yaw[0], yaw[0]), Samples.of(*yaw)
+    legs = [straight, spiral, straight, straight, spiral, spiral]
+    events = [place, *(event for leg in legs for event in (leg, place))]
+    assert confirmed(Walk(WalkHeader(), tuple(events)), None) > 0
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ A variable says that two nodes are one place, exit x of the first being exit x +
 and shift that `likeness` allows, so a pair without a variable is known to be two places. Clauses say
 
 - *transitive*: two nodes that are one place with a third are one place with each other, and the shifts add up;
-- *congruent*: the way out of one exit of a place leads to one place, by one exit of it, and turns alike; and no way is its
+- *congruent*: the way out of one exit of a place leads to one place, by one exit of it; and no way is its
   own reverse;
 - *covered*, where no exit is left untravelled: an exit that a node did not walk is walked by another node of its place;
 - *together*: nodes known to be one place are.
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from .walk_tree import WalkTree
 
 __all__ = ["NodePairs", "clauses", "node_pairs", "triples"]
-
-WHOLE = np.pi
-"""Radians by which two legs along one way cannot turn differently: those that do differ by whole turns."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,7 +122,7 @@ def _transitive(tree: WalkTree, pairs: NodePairs, n: int) -> list[list[int]]:
 def _congruent(tree: WalkTree, pairs: NodePairs) -> list[list[int]]:
     """Return where the ways out of two nodes that are one place lead."""
     found: list[list[int]] = []
-    degree, other, back, turn = tree.degree.tolist(), tree.other.tolist(), tree.back.tolist(), tree.turn.tolist()
+    degree, other, back = tree.degree.tolist(), tree.other.tolist(), tree.back.tolist()
     triple = zip(pairs.first.tolist(), pairs.second.tolist(), pairs.shift.tolist(), strict=True)
     for x, (a, b, k) in enumerate(triple, 1):
         for e in range(degree[a]):
@@ -137,7 +134,7 @@ def _congruent(tree: WalkTree, pairs: NodePairs) -> list[list[int]]:
                 found.append([-x])  # the way would be its own reverse
                 continue
             there = _same(degree, pairs, p, back[a][e], q, back[b][f])
-            if there == 0 or abs(turn[a][e] - turn[b][f]) > WHOLE:
+            if there == 0:
                 found.append([-x])
             elif there is not None and there != x:
                 found.append([-x, there])

@@ -115,7 +115,7 @@ class _Tree:
         self.back: list[list[int]] = tree.back.tolist()
         self.turn: list[list[float]] = tree.turn.tolist()
         self.names = tree.names
-        self.tolerance = tree.tolerance + 1e-12
+        self.tolerance = tree.tolerance + 1e-9
         self.differ = {frozenset(pair) for pair in differ}
         self.same = {frozenset(pair) for pair in same}
 
@@ -243,7 +243,7 @@ class _Check:
             back, other_back = tree.back[n][x], tree.back[m][y]
             if (p, back) == (m, y) and (q, other_back) == (n, x):
                 return None
-            if tree.degree[p] != tree.degree[q] or abs(tree.turn[n][x] - tree.turn[m][y]) > pi:
+            if tree.degree[p] != tree.degree[q]:
                 return None
             shift = (other_back - back) % tree.degree[p]
             if (p == q and shift) or not tree.alike(p, q, shift):
