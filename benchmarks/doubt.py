@@ -27,7 +27,7 @@ from tests.alike import covering_walk, depth_first_walk, grid, observed, piece, 
 
 MINUTE = 60.0
 WALKS = {"depth-first": depth_first_walk, "covering": covering_walk}
-GRIDS = ((6, "0.1 s"), (8, "1 s"), (10, "5 s, worst 60 s"), (12, "4 of 5 in 60 s"))
+GRIDS = ((6, "0.1 s"), (8, "1 s"), (10, "5 s (60 s)"), (12, "4 of 5"))
 
 
 def clocked(job: Callable[[], Hypotheses]) -> tuple[float, Hypotheses]:
