@@ -1,108 +1,72 @@
-"""Kernels of the search for quotients of a folded walk: a plane map with stubs that grows by one decision at a time.
+"""Kernels of a plane map with stubs, a quotient of a folded walk in the making: its places and its faces.
 
 A *place* is a set of nodes that are one, with the exits of its first node. A *stub* is an exit of a place that has no mate
 yet. Deciding a stub means to say where the way behind it ends: at a new place, or at another stub of the same face, whose
 *contour* is walked clockwise from stub to stub. Whatever follows is folded in: the nodes beyond both exits become one, and
 so on. Every decision is taken back exactly.
 
-Arrays are in one named tuple, `Quotient`; columns have names below. Exit x of node n is ``n * K + x``, exit x of place w is
-``w * K + x``. Angles are radians. All functions change the arrays they are given.
+All of it is arrays in one named tuple, `Quotient` of ``_quotient_state``, which all functions change.
 """
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ninefold._kernels import kernel
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from ._quotient_state import (
+    BACK,
+    BEYOND,
+    CLOCKWISE,
+    DEGREE,
+    EARLIEST,
+    ENDS,
+    FIRST,
+    GROUP,
+    HEADING,
+    KIND,
+    KIND_OF_EXIT,
+    LENGTH,
+    MATE,
+    N_PLACES,
+    N_TRAIL,
+    NEXT,
+    OTHER,
+    PLACE,
+    PLACE_OF_GROUP,
+    PLACED,
+    REFERENCE,
+    RELATIVE,
+    SEEN,
+    SHIFT,
+    SIGN,
+    SIGN_OF_PLACE,
+    STRICT,
+    STUBS,
+    TOLERANCE,
+    TURN,
+    TURN_LEFT,
+    UNITS,
+    UNITS_LEFT,
+    WORK,
+)
 
-__all__ = ["Quotient", "searched"]
-
-# columns of `node`
-DEGREE, PLACE, SHIFT, NEXT, SIGN, UNITS, FAILS, GROUP = 0, 1, 2, 3, 4, 5, 6, 7
-# columns of `way`
-OTHER, BACK, KIND, LENGTH, BEYOND = 0, 1, 2, 3, 4
-# columns of `angle` and `bearing`
-HEADING, TURN = 0, 1
-# columns of `place`: DEGREE, FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST
-FIRST, SIGN_OF_PLACE, REFERENCE, EARLIEST = 1, 2, 3, 4
-# columns of `exit`
-MATE, KIND_OF_EXIT, SEEN, ENTERED, ENTERED_BY, CLOCKWISE = 0, 1, 2, 3, 4, 5
-# columns of `group`
-PLACED, PLACE_OF_GROUP = 0, 1
-# columns of `balance`
-HERE, SURPLUS, LACK = 0, 1, 2
-# columns of `kind`
-STUBS, ENDS, COMPONENT, SIDE = 0, 1, 2, 3
-# columns of `sign`, kinds of its exits after them
-UNITS_LEFT, DEMAND, DEGREE_OF_SIGN, KINDS = 0, 1, 2, 3
-# rows of `number`
-N_PLACES, N_TRAIL, TURN_LEFT, RELATIVE, CLOSED, STRICT, WORK = 0, 1, 2, 3, 4, 5, 6
-# rows of `limit`
-TOLERANCE, MOST_PLACES = 0, 1
-# rows of `control`, how the search stands
-DEPTH, TOP, GOING_DOWN, N_DECISIONS, N_FOUND, DONE = 0, 1, 2, 3, 4, 5
-# columns of `frame`
-STUB, BOTTOM, TRAIL_BEFORE, PLACES_BEFORE, ENTERED_STUB = 0, 1, 2, 3, 4
-
-NONE = -1
-NOTHING = -2
-MICRO = 1e-6
-"""Radians in a unit of `LENGTH` and `TURN_LEFT`, which are whole numbers so that they come back exactly."""
-
-
-class Quotient(NamedTuple):
-    """The tree of a walk and a quotient in the making: N nodes, at most P places, K exits each, C kinds, S signatures."""
-
-    node: NDArray[np.int64]
-    """(N, 8): degree; place, shift, next node of the same place; signature; places a node can stand in for; failures; group
-    of nodes that must be one place, or -1."""
-    way: NDArray[np.int64]
-    """(N K, 5): other node, exit there, kind; microradians that its edge can turn; edges of the tree out that way."""
-    angle: NDArray[np.float64]
-    """(N K, 2): heading, net turn."""
-    alike: NDArray[np.int64]
-    """(N, N): shifts under which two nodes can be one, as bits."""
-    place: NDArray[np.int64]
-    """(P, 5): degree, first node of the list, signature, node whose exits it has, and its earliest node."""
-    exit: NDArray[np.int64]
-    """(P K, 6): mate or -1, kind, a mark, how many ways may enter here and the last of them, the next exit clockwise."""
-    bearing: NDArray[np.float64]
-    """(P K, 2): heading, net turn of the edge."""
-    kind: NDArray[np.int64]
-    """(C, 4): stubs, ends of walked ways not placed; component and side of kinds joined by ways, if they have two sides."""
-    sign: NDArray[np.int64]
-    """(S, 3 + K): units left, units needed, degree, kinds."""
-    bend: NDArray[np.float64]
-    """(S,): largest reflex turn of a place."""
-    surplus: NDArray[np.int64]
-    """(S, B): exits of one side beyond those of the other, per component."""
-    number: NDArray[np.int64]
-    """(7,): places, length of the trail, microradians that edges not placed can turn, flags; ends looked at so far."""
-    limit: NDArray[np.float64]
-    """(2,): tolerance, radians; most places."""
-    trail: NDArray[np.int64]
-    """(N,): nodes in the order placed."""
-    group: NDArray[np.int64]
-    """(G, 2): nodes placed of every group, and their place."""
-    queue: NDArray[np.int64]
-    """(Q, 3)."""
-    stub: NDArray[np.int64]
-    """(P K + 2,): stubs along a contour."""
-    turned: NDArray[np.float64]
-    """(P K + 2,): turn from the first stub to each of them."""
-    option: NDArray[np.int64]
-    """(P K + 2,): options of a stub."""
-    balance: NDArray[np.int64]
-    """(B, 3)."""
-    start: NDArray[np.int64]
-    """(N K + 1,): where the candidates of an exit begin."""
-    candidate: NDArray[np.int64]
-    """Exits of nodes that walk through an exit of a place that has this node's exits."""
+__all__ = [
+    "ahead",
+    "clockwise",
+    "contour",
+    "corner",
+    "count_between",
+    "folded",
+    "may_turn",
+    "options",
+    "place_made",
+    "put",
+    "taken_back",
+    "turns_once",
+    "walked_from",
+    "wrapped",
+]
 
 
 @kernel
@@ -459,333 +423,4 @@ def options(q, at, met, walked, may_be_new):  # type: ignore[no-untyped-def]
                 continue
         q.option[found] = other
         found += 1
-    return found
-
-
-@kernel
-def places_possible(q, s):  # type: ignore[no-untyped-def]
-    """Return how many places of a signature can still be made: ways left must cover every exit, and the stubs there are."""
-    most = (q.sign[s, UNITS_LEFT] - q.sign[s, DEMAND]) // ((q.sign[s, DEGREE_OF_SIGN] + 1) // 2)
-    for x in range(q.sign[s, DEGREE_OF_SIGN]):
-        k = q.sign[s, KINDS + x]
-        spare = q.kind[k, ENDS] - q.kind[k, STUBS]
-        if spare < most:
-            most = spare
-    return most
-
-
-@kernel
-def demanded(q):  # type: ignore[no-untyped-def]
-    """Work out what open exits that no way leads through demand of nodes left; return whether there are enough.
-
-    A node left covers some exits of one place: the sum over places of half their open exits, rounded up, is at most the sum
-    over nodes of half the ways they walk, rounded up.
-    """
-    width = q.exit.shape[0] // q.place.shape[0]
-    for s in range(q.sign.shape[0]):
-        q.sign[s, DEMAND] = 0
-    for w in range(q.number[N_PLACES]):
-        unwalked = 0
-        for x in range(q.place[w, DEGREE]):
-            e = w * width + x
-            if q.exit[e, MATE] < 0 and walked_from(q, e) < 0:
-                unwalked += 1
-        q.sign[q.place[w, SIGN_OF_PLACE], DEMAND] += (unwalked + 1) // 2
-    enough = True
-    for s in range(q.sign.shape[0]):
-        enough = enough and q.sign[s, DEMAND] <= q.sign[s, UNITS_LEFT]
-    return enough
-
-
-@kernel
-def within_budget(q):  # type: ignore[no-untyped-def]
-    """Return whether every face can still turn as it must.
-
-    A chain is the piece of a face between two stubs. An inner face of the whole map has 2 pi more positive turn than
-    negative, so what a chain has beyond 2 pi must be paid for by negative turn elsewhere in its region: by other chains
-    there, by places not made yet, or by edges not placed yet. And where ways join kinds of exits of two sides, the stubs of
-    a region must be balanced by places to come.
-    """
-    width = q.exit.shape[0] // q.place.shape[0]
-    sides = q.balance.shape[0]
-    possible = q.number[TURN_LEFT] * MICRO
-    for s in range(q.sign.shape[0]):
-        if q.bend[s] > 0:
-            possible += max(places_possible(q, s), 0) * q.bend[s]
-    for b in range(sides):
-        q.balance[b, SURPLUS] = 0
-        q.balance[b, LACK] = 0
-    for w in range(q.number[N_PLACES]):
-        for x in range(q.place[w, DEGREE]):
-            q.exit[w * width + x, SEEN] = 0
-    needed = 0.0
-    for w in range(q.number[N_PLACES]):
-        for first in range(q.place[w, DEGREE]):
-            begin = w * width + first
-            if q.exit[begin, MATE] >= 0 or q.exit[begin, SEEN]:
-                continue
-            for b in range(sides):
-                q.balance[b, HERE] = 0
-            excess = 0.0
-            negative = 0.0
-            parts = 0
-            edges = 0
-            total = 0.0
-            paid = 0.0
-            stubs = 0
-            x = begin
-            while True:
-                q.exit[x, SEEN] = 1
-                stubs += 1
-                if q.number[RELATIVE]:
-                    edges += ahead(q, x)
-                k = q.exit[x, KIND_OF_EXIT]
-                if q.kind[k, COMPONENT] >= 0:
-                    q.balance[q.kind[k, COMPONENT], HERE] += q.kind[k, SIDE]
-                up = 0.0
-                down = 0.0
-                before = x
-                while True:
-                    x = clockwise(q, x)
-                    angle = np.pi - corner(q, before, x)
-                    parts += 2
-                    up += max(angle, 0.0)
-                    down += max(-angle, 0.0)
-                    if q.exit[x, MATE] < 0:
-                        break
-                    angle = q.bearing[x, TURN]
-                    up += max(angle, 0.0)
-                    down += max(-angle, 0.0)
-                    before = q.exit[x, MATE]
-                    x = before
-                excess += max(up - 2 * np.pi, 0.0)
-                paid += min(up, down)
-                negative += down
-                total += up - down
-                if x == begin:
-                    break
-            for b in range(sides):
-                if q.balance[b, HERE] > 0:
-                    q.balance[b, SURPLUS] += q.balance[b, HERE]
-                else:
-                    q.balance[b, LACK] -= q.balance[b, HERE]
-            total -= np.pi * stubs
-            may_err = 0.0
-            if q.number[RELATIVE]:
-                may_err = 3 * parts * q.limit[TOLERANCE]
-                negative += may_err
-                may_err += 4 * edges * q.limit[TOLERANCE]
-            if total < 0 and total + may_err < 2 * np.pi:  # it holds the outer face: 2 pi more negative turn than positive
-                excess = max(excess, paid) + 2 * np.pi
-            needed += max(excess - negative, 0.0)
-            if needed > possible + 1e-5:
-                return False
-    for b in range(sides):
-        if q.balance[b, SURPLUS] > 0 or q.balance[b, LACK] > 0:
-            up_left = 0
-            down_left = 0
-            for s in range(q.sign.shape[0]):
-                if q.surplus[s, b]:
-                    most = max(places_possible(q, s), 0)
-                    up_left += most * max(q.surplus[s, b], 0)
-                    down_left += most * max(-q.surplus[s, b], 0)
-            if q.balance[b, SURPLUS] > down_left or q.balance[b, LACK] > up_left:
-                return False
-    return True
-
-
-@kernel
-def decided(q, stub, end):  # type: ignore[no-untyped-def]
-    """Let the way through a stub end at another stub, or at a new place (-1).
-
-    Returns (the stub entered, whether that can be); either way it is to be taken back by `undone`.
-    """
-    width = q.exit.shape[0] // q.place.shape[0]
-    walked = walked_from(q, stub)
-    m = q.way[walked, OTHER]
-    turn = q.angle[walked, TURN]
-    new = end == -1
-    if new:
-        end = place_made(q, m) * width + q.way[walked, BACK]
-    settled = turn
-    if not q.number[RELATIVE]:
-        settled += wrapped(q.bearing[end, HEADING] + np.pi - q.bearing[stub, HEADING] - turn)
-    q.exit[stub, MATE] = end
-    q.exit[end, MATE] = stub
-    q.bearing[stub, TURN] = settled
-    q.bearing[end, TURN] = -settled
-    q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] -= 1
-    q.kind[q.exit[end, KIND_OF_EXIT], STUBS] -= 1
-    count_between(q, stub, -1)
-    if new and not put(q, m, end // width, 0):
-        return end, False
-    if not folded(q, stub, end):
-        return end, False
-    if q.number[RELATIVE] and q.number[STRICT] == 1 and not (may_turn(q, stub) and may_turn(q, end)):
-        return end, False
-    if q.number[CLOSED] == 1:
-        for k in range(q.kind.shape[0]):
-            if q.kind[k, STUBS] > q.kind[k, ENDS]:
-                return end, False
-        if not demanded(q):
-            return end, False
-        if q.number[STRICT] == 1 and not within_budget(q):
-            return end, False
-    return end, True
-
-
-@kernel
-def undone(q, stub, end, trail, places):  # type: ignore[no-untyped-def]
-    """Take a decision back: the trail and the places are as they were."""
-    width = q.exit.shape[0] // q.place.shape[0]
-    taken_back(q, trail)
-    count_between(q, stub, 1)
-    q.exit[stub, MATE] = -1
-    q.exit[end, MATE] = -1
-    q.kind[q.exit[stub, KIND_OF_EXIT], STUBS] += 1
-    q.kind[q.exit[end, KIND_OF_EXIT], STUBS] += 1
-    if q.number[N_PLACES] > places:
-        q.number[N_PLACES] = places
-        for x in range(q.place[places, DEGREE]):
-            q.kind[q.exit[places * width + x, KIND_OF_EXIT], STUBS] -= 1
-
-
-@kernel
-def branch(q, best):  # type: ignore[no-untyped-def]
-    """Choose the stub to decide next, the one with the fewest ends; they are put into `best`.
-
-    Returns (stub or -1 if all walked ways are placed, number of ends). For closed maps, a stub that no way leads through has
-    to be entered by some: by none of those that end in its face or by a node still to come, it fails; by one alone, that one
-    is decided.
-    """
-    width = q.exit.shape[0] // q.place.shape[0]
-    closed = q.number[CLOSED] == 1
-    chosen = -1
-    fewest = 1 << 30
-    heaviest = -1
-    if closed:
-        for e in range(q.number[N_PLACES] * width):
-            q.exit[e, ENTERED] = 0
-    may_be_new = q.number[N_PLACES] < q.limit[MOST_PLACES]
-    for w in range(q.number[N_PLACES]):
-        for x in range(q.place[w, DEGREE]):
-            q.exit[w * width + x, SEEN] = 0
-    for w in range(q.number[N_PLACES]):
-        for x in range(q.place[w, DEGREE]):
-            begin = w * width + x
-            if q.exit[begin, MATE] >= 0 or q.exit[begin, SEEN]:
-                continue
-            met = contour(q, begin)
-            for at in range(met):
-                e = q.stub[at]
-                walked = walked_from(q, e)
-                if walked < 0:
-                    continue
-                m = q.way[walked, OTHER]
-                found = options(q, at, met, walked, may_be_new)
-                if closed:
-                    for j in range(found):
-                        if q.option[j] >= 0:
-                            q.exit[q.option[j], ENTERED] += 1
-                            q.exit[q.option[j], ENTERED_BY] = e
-                if found == 0:
-                    q.node[m, FAILS] += 1
-                    return e, 0
-                if found < fewest or (found == fewest and found > 1 and q.node[m, FAILS] > heaviest):
-                    chosen = e
-                    fewest = found
-                    heaviest = q.node[m, FAILS]
-                    for j in range(found):
-                        best[j] = q.option[j]
-    if not closed or chosen < 0:
-        return chosen, fewest
-    for w in range(q.number[N_PLACES]):
-        for x in range(q.place[w, DEGREE]):
-            e = w * width + x
-            if (
-                q.exit[e, MATE] >= 0
-                or q.exit[e, ENTERED] > 1
-                or (q.exit[e, ENTERED] == 1 and fewest == 1)
-                or walked_from(q, e) >= 0
-            ):
-                continue
-            reference = q.place[w, REFERENCE]
-            own = reference * width + (x - q.node[reference, SHIFT]) % q.place[w, DEGREE]
-            later = False
-            for i in range(q.start[own], q.start[own + 1]):
-                n = q.candidate[i] // width
-                if q.node[n, PLACE] < 0 and q.node[q.way[q.candidate[i], OTHER], PLACE] < 0:
-                    later = True
-                    break
-            if later:
-                continue
-            if q.exit[e, ENTERED] == 0:
-                return e, 0
-            chosen = q.exit[e, ENTERED_BY]
-            fewest = 1
-            best[0] = e
-    return chosen, fewest
-
-
-@kernel(compile_seconds=9.0)
-def searched(q, control, frame, choice, best, out, stop):  # type: ignore[no-untyped-def]
-    """Search on from where the search stands; return how many quotients were found, the places of all nodes in `out`.
-
-    Parameters: control (6,), frame (depth, 5) and choice say how the search stands; best is scratch; out (B, N, 2) takes
-    place and shift of every node; stop is a number of decisions. Returns early when `out` is full; control[DONE] tells the
-    end.
-    """
-    found = 0
-    made = 0
-    down = control[GOING_DOWN] == 1
-    depth = control[DEPTH]
-    top = control[TOP]
-    while True:
-        if down:
-            if made >= stop or found == out.shape[0]:
-                control[GOING_DOWN] = 1
-                break
-            made += 1
-            stub, number = branch(q, best)
-            if stub < 0:
-                whole = True
-                if q.number[CLOSED] == 1:
-                    for k in range(q.kind.shape[0]):
-                        if q.kind[k, STUBS] > 0:
-                            whole = False
-                if whole and q.number[RELATIVE] and q.number[STRICT] == 1:
-                    whole = turns_once(q)
-                if whole:
-                    for n in range(q.node.shape[0]):
-                        out[found, n, 0] = q.node[n, PLACE]
-                        out[found, n, 1] = q.node[n, SHIFT]
-                    found += 1
-            else:
-                frame[depth, STUB] = stub
-                frame[depth, BOTTOM] = top
-                for j in range(number):
-                    choice[top + j] = best[number - 1 - j]
-                top += number
-                frame[depth, TRAIL_BEFORE] = q.number[N_TRAIL]
-                frame[depth, PLACES_BEFORE] = q.number[N_PLACES]
-                frame[depth, ENTERED_STUB] = NOTHING
-                depth += 1
-        if depth == 0:
-            control[DONE] = 1
-            break
-        f = depth - 1
-        if frame[f, ENTERED_STUB] != NOTHING:
-            undone(q, frame[f, STUB], frame[f, ENTERED_STUB], frame[f, TRAIL_BEFORE], frame[f, PLACES_BEFORE])
-            frame[f, ENTERED_STUB] = NOTHING
-        if top <= frame[f, BOTTOM]:
-            depth -= 1
-            down = False
-            continue
-        top -= 1
-        end, down = decided(q, frame[f, STUB], choice[top])
-        frame[f, ENTERED_STUB] = end
-    control[DEPTH] = depth
-    control[TOP] = top
-    control[N_DECISIONS] += made
-    control[N_FOUND] += found
     return found

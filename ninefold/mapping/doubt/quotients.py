@@ -6,7 +6,7 @@ yet. The way through a stub ends at a new place or at another stub *of the same 
 genus, so these are all the ends there are. The face it closes must turn +1; or -1 if it is all that the outside has. The
 stub with the fewest ends is decided next; what contradicts is taken back.
 
-For closed maps, in which no exit is left untravelled, much more can be told early: see `_quotient_kernels` (kinds of exits,
+For closed maps, in which no exit is left untravelled, much more can be told early: see `_search_kernels` (kinds of exits,
 demand, the turning budget). Which node the search begins with changes nothing in its answer and a lot in its time.
 
 References
@@ -21,7 +21,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..heading import TAU
-from . import _quotient_kernels as kernels
+from . import _quotient_state as state
+from ._quotient_kernels import place_made, put
+from ._search_kernels import searched
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -66,43 +68,43 @@ class QuotientSearch:
         self.tree = tree
         self._state = _quotient(tree, alike, closed=closed, turning=turning, most_places=most_places)
         if fails is not None:
-            self._state.node[:, kernels.FAILS] = fails
+            self._state.node[:, state.FAILS] = fails
         count = tree.n_nodes
         self._control = np.zeros(6, np.int64)
-        self._control[kernels.GOING_DOWN] = 1
+        self._control[state.GOING_DOWN] = 1
         depth = max(count, int((tree.other >= 0).sum()) // 2) + 2  # more ways than nodes, where claims made nodes one
         self._frame = np.zeros((depth, 5), np.int64)
         self._choice = np.empty(depth * (int(tree.degree.sum()) + 2), np.int64)  # pages not used take no memory
         self._best = np.zeros(self._state.option.size, np.int64)
-        place = kernels.place_made(self._state, root)
-        possible = kernels.put(self._state, root, place, 0) and alike.shifts.diagonal().all()  # a node differs from itself
+        place = place_made(self._state, root)
+        possible = put(self._state, root, place, 0) and alike.shifts.diagonal().all()  # a node differs from itself
         if not possible:
-            self._control[kernels.DONE] = 1
+            self._control[state.DONE] = 1
 
     @property
     def decisions(self) -> int:
         """Decisions made so far."""
-        return int(self._control[kernels.N_DECISIONS])
+        return int(self._control[state.N_DECISIONS])
 
     @property
     def found(self) -> int:
         """Quotients found so far."""
-        return int(self._control[kernels.N_FOUND])
+        return int(self._control[state.N_FOUND])
 
     @property
     def work(self) -> int:
         """Ends of ways looked at so far: what takes the time, counted alike on every machine."""
-        return int(self._state.number[kernels.WORK])
+        return int(self._state.number[state.WORK])
 
     @property
     def done(self) -> bool:
         """Whether the search has come to its end: then `found` is the number of quotients."""
-        return bool(self._control[kernels.DONE])
+        return bool(self._control[state.DONE])
 
     @property
     def fails(self) -> NDArray[np.int64]:
         """How often every node was in the way: a hint for another search of the same tree."""
-        return self._state.node[:, kernels.FAILS].copy()
+        return self._state.node[:, state.FAILS].copy()
 
     def more(self, decisions: int, most: int = SLICE) -> NDArray[np.int64]:
         """Go on for some decisions; return the quotients found, (B, N, 2): place and shift of every node.
@@ -114,43 +116,43 @@ class QuotientSearch:
         if self.done:
             return np.zeros((0, self.tree.n_nodes, 2), np.int64)
         out = np.zeros((most, self.tree.n_nodes, 2), np.int64)
-        form = kernels.searched.for_work(decisions * 60 * self.tree.n_nodes)
+        form = searched.for_work(decisions * 60 * self.tree.n_nodes)
         found = int(form(self._state, self._control, self._frame, self._choice, self._best, out, decisions))
         return out[:found]
 
 
-def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, most_places: int | None) -> kernels.Quotient:
+def _quotient(tree: WalkTree, alike: Likeness, *, closed: bool, turning: bool, most_places: int | None) -> state.Quotient:
     """Lay out the state of a search."""
     count, width = tree.heading.shape
     places = count + 1
     walked = tree.other >= 0
     node = np.zeros((count, 8), np.int64)
-    node[:, kernels.DEGREE] = tree.degree
-    node[:, kernels.PLACE] = -1
-    node[:, kernels.NEXT] = -1
-    node[:, kernels.SIGN] = alike.signature
-    node[:, kernels.UNITS] = (walked.sum(axis=1) + 1) // 2
-    node[:, kernels.GROUP] = alike.group
+    node[:, state.DEGREE] = tree.degree
+    node[:, state.PLACE] = -1
+    node[:, state.NEXT] = -1
+    node[:, state.SIGN] = alike.signature
+    node[:, state.UNITS] = (walked.sum(axis=1) + 1) // 2
+    node[:, state.GROUP] = alike.group
     way = np.zeros((count * width, 5), np.int64)
-    way[:, kernels.OTHER] = tree.other.reshape(-1)
-    way[:, kernels.BACK] = tree.back.reshape(-1)
-    way[:, kernels.KIND] = alike.kind.reshape(-1)
+    way[:, state.OTHER] = tree.other.reshape(-1)
+    way[:, state.BACK] = tree.back.reshape(-1)
+    way[:, state.KIND] = alike.kind.reshape(-1)
     turn = np.where(walked, np.abs(tree.turn) + _slack(tree, alike), 0.0)
-    way[:, kernels.LENGTH] = np.ceil(turn.reshape(-1) / kernels.MICRO).astype(np.int64)
-    way[:, kernels.BEYOND] = _edges_beyond(tree).reshape(-1)
+    way[:, state.LENGTH] = np.ceil(turn.reshape(-1) / state.MICRO).astype(np.int64)
+    way[:, state.BEYOND] = _edges_beyond(tree).reshape(-1)
     angle = np.zeros((count * width, 2))
-    angle[:, kernels.HEADING] = np.nan_to_num(tree.heading).reshape(-1)
-    angle[:, kernels.TURN] = tree.turn.reshape(-1)
+    angle[:, state.HEADING] = np.nan_to_num(tree.heading).reshape(-1)
+    angle[:, state.TURN] = tree.turn.reshape(-1)
     sign, bend = _signatures(tree, alike, node)
     kind, surplus = _sides(tree, alike, sign)
     number = np.zeros(7, np.int64)
-    number[kernels.TURN_LEFT] = int(way[:, kernels.LENGTH].sum()) // 2
-    number[kernels.RELATIVE] = not tree.compass
-    number[kernels.CLOSED] = closed
-    number[kernels.STRICT] = turning
+    number[state.TURN_LEFT] = int(way[:, state.LENGTH].sum()) // 2
+    number[state.RELATIVE] = not tree.compass
+    number[state.CLOSED] = closed
+    number[state.STRICT] = turning
     limit = np.array([tree.tolerance, most_places or places], np.float64)
     start, candidate = _candidates(tree, alike)
-    return kernels.Quotient(
+    return state.Quotient(
         node,
         way,
         angle,
@@ -220,9 +222,9 @@ def _signatures(tree: WalkTree, alike: Likeness, node: NDArray[np.int64]) -> tup
     bend = np.zeros(count)
     for n in range(tree.n_nodes):
         s, degree = int(alike.signature[n]), int(tree.degree[n])
-        sign[s, kernels.DEGREE_OF_SIGN] = degree
-        sign[s, kernels.KINDS : kernels.KINDS + degree] = alike.kind[n, :degree]
-        sign[s, kernels.UNITS_LEFT] += node[n, kernels.UNITS]
+        sign[s, state.DEGREE_OF_SIGN] = degree
+        sign[s, state.KINDS : state.KINDS + degree] = alike.kind[n, :degree]
+        sign[s, state.UNITS_LEFT] += node[n, state.UNITS]
         if degree:
             yaw = tree.heading[n, :degree]
             corners = np.diff(np.append(yaw, yaw[0] + TAU))
@@ -238,10 +240,10 @@ def _sides(tree: WalkTree, alike: Likeness, sign: NDArray[np.int64]) -> tuple[ND
     """
     beside: list[set[int]] = [set() for _ in range(alike.n_kinds)]
     kind = np.zeros((alike.n_kinds, 4), np.int64)
-    kind[:, kernels.COMPONENT] = -1
+    kind[:, state.COMPONENT] = -1
     n, x = np.nonzero(tree.other >= 0)
     here, there = alike.kind[n, x], alike.kind[tree.other[n, x], tree.back[n, x]]
-    np.add.at(kind[:, kernels.ENDS], here, 1)
+    np.add.at(kind[:, state.ENDS], here, 1)
     for a, b in set(zip(here.tolist(), there.tolist(), strict=True)):
         beside[a].add(b)
     components = 0
@@ -258,14 +260,14 @@ def _sides(tree: WalkTree, alike: Likeness, sign: NDArray[np.int64]) -> tuple[ND
                     members.append(b)
                 two_sided &= side[b] != side[a]
         if two_sided:
-            kind[members, kernels.COMPONENT] = components
-            kind[members, kernels.SIDE] = [side[a] for a in members]
+            kind[members, state.COMPONENT] = components
+            kind[members, state.SIDE] = [side[a] for a in members]
             components += 1
     surplus = np.zeros((sign.shape[0], max(components, 1)), np.int64)
     for s in range(sign.shape[0]):
-        for k in sign[s, kernels.KINDS : kernels.KINDS + sign[s, kernels.DEGREE_OF_SIGN]].tolist():
-            if kind[k, kernels.COMPONENT] >= 0:
-                surplus[s, kind[k, kernels.COMPONENT]] += kind[k, kernels.SIDE]
+        for k in sign[s, state.KINDS : state.KINDS + sign[s, state.DEGREE_OF_SIGN]].tolist():
+            if kind[k, state.COMPONENT] >= 0:
+                surplus[s, kind[k, state.COMPONENT]] += kind[k, state.SIDE]
     return kind, surplus[:, :components] if components else surplus[:, :0]
 
 
