@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["LARGEST_ANGLE", "TAU", "Heading", "circular_mean", "too_large_an_angle", "unwrap", "wrap"]
+__all__ = ["LARGEST_ANGLE", "TAU", "Heading", "circular_mean", "too_large_an_angle", "unwrap", "wrap", "wrap_all"]
 
 TAU = 2 * math.pi
 
@@ -41,6 +41,17 @@ def wrap(angle: float) -> float:
     """
     wrapped = math.remainder(angle, TAU)
     return math.pi if wrapped <= -math.pi else wrapped
+
+
+def wrap_all(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the angles, radians, that differ from those given by whole turns and lie in [-pi, pi].
+
+    Examples
+    --------
+    >>> wrap_all(np.array([7.0, -7.0])).round(4).tolist()
+    [0.7168, -0.7168]
+    """
+    return np.asarray(angle - TAU * np.round(angle / TAU))
 
 
 def unwrap(samples: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import wrap_all
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,5 +95,5 @@ def _moves_alike(stars: Stars, back: NDArray[np.int64], *, compass: bool) -> NDA
     if not compass:
         yaw = yaw - stars.heading[back][:, None]
     error = yaw[0][None, :, None] - yaw[:, None, :]  # candidate, exit of the first, its own exit
-    way = np.abs(error - TAU * np.round(error / TAU)).argmin(axis=2)
+    way = np.abs(wrap_all(error)).argmin(axis=2)
     return np.ascontiguousarray(np.take_along_axis(darts, way, axis=1) ^ 1)

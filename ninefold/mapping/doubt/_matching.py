@@ -24,7 +24,7 @@ import numpy as np
 from ninefold._wording import counted
 from ninefold.errors import TooLarge
 
-from ..heading import TAU
+from ..heading import TAU, wrap_all
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -139,7 +139,7 @@ def _fits(k: int, look: Look, noise: Noise) -> bool:
 
 def _log_density(error: Floats, sigma: float) -> Floats:
     """Return the log density of errors, wrapped here, up to a constant."""
-    size = np.abs(error - TAU * np.round(error / TAU)) / sigma
+    size = np.abs(wrap_all(error)) / sigma
     return np.where(size <= GATE, -0.5 * size * size, _LOWEST)
 
 
@@ -240,7 +240,7 @@ def _two_headings(yaw: Floats, back: NDArray[np.int64] | None, look: Look, left:
     if look.back is None or back is None:
         return np.zeros((n, k))
     turned = (left.yaw - look.back) - (yaw - yaw[np.arange(n), back][:, None])
-    size = np.abs(turned - TAU * np.round(turned / TAU)) / noise.sigma
+    size = np.abs(wrap_all(turned)) / noise.sigma
     return np.where(size <= 2 * GATE, -0.25 * size * size, _LOWEST)
 
 
@@ -297,7 +297,7 @@ class _Spread:
 
     def add(self, error: Floats) -> _Spread:
         """Take one error more."""
-        wrapped = error - TAU * np.round(error / TAU)
+        wrapped = wrap_all(error)
         self.count += 1
         self.total = self.total + wrapped
         self.squares = self.squares + wrapped * wrapped

@@ -9,7 +9,7 @@ import numpy as np
 from ninefold._wording import counted, quoted
 from ninefold.errors import EmptyBelief
 
-from ..heading import TAU
+from ..heading import wrap_all
 from ._outlook import likeliest_shift
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _nearest(
         darts = np.concatenate(ways)
         alike = stars.tail[darts]
         error = look.back - stars.heading[darts]
-        error = (error - TAU * np.round(error / TAU))[:, None]
+        error = wrap_all(error)[:, None]
     else:
         name = plane.vertex_names[int(places[0])]
         return name, f"{quoted(name)} was among them"
@@ -97,5 +97,5 @@ def _least_errors(yaw: NDArray[np.float64], exits: NDArray[np.float64], *, compa
     error = exits - np.take_along_axis(yaw, (np.arange(k) + shift[:, None]) % k, axis=1)
     if not compass:
         error -= error[:, :1]
-    error -= TAU * np.round(error / TAU)
+    error = wrap_all(error)
     return error if compass else error - error.mean(axis=1, keepdims=True)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import wrap_all
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,7 @@ def likeliest_exits(
         shift = likeliest_shift(yaw, exits, back, look, compass=compass)
         return np.asarray((np.arange(k) + shift[:, None]) % k)
     error = exits[None, :, None] - yaw[:, None, :]
-    return np.asarray(np.abs(error - TAU * np.round(error / TAU)).argmin(axis=2))
+    return np.asarray(np.abs(wrap_all(error)).argmin(axis=2))
 
 
 def likeliest_shift(
@@ -73,7 +73,7 @@ def likeliest_shift(
         error = exits - yaw[:, (np.arange(k) + shift) % k]
         if not compass:
             error -= error[:, :1] if zero is None else zero
-        error -= TAU * np.round(error / TAU)
+        error = wrap_all(error)
         if not compass and zero is None:
             error -= error.mean(axis=1, keepdims=True)
         cost[:, shift] = (error * error).sum(axis=1)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import TAU, wrap_all
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class Stars:
 
     def __init__(self, plane: PlaneMap, heading: NDArray[np.float64]) -> None:
         self.tail = plane.tail.astype(np.int64)
-        self.heading = heading - TAU * np.round(heading / TAU)
+        self.heading = wrap_all(heading)
         self.degree = plane.degree.astype(np.int64)
         exits = np.flatnonzero(~np.repeat(plane.tether, 2))
         self._darts = exits[np.lexsort((self.heading[exits], self.tail[exits]))]

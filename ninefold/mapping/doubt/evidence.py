@@ -15,7 +15,7 @@ import numpy as np
 from ninefold._wording import counted, quoted
 from ninefold.errors import WalkError, located
 
-from ..heading import wrap
+from ..heading import wrap, wrap_all
 from ..names import Names
 from ..robot.legs import LegReader
 from ..robot.units import unit_of
@@ -97,12 +97,6 @@ class Evidence:
                 for yaws, of_visit in zip(self.exits, bias.tolist(), strict=True)
             ),
         )
-
-
-def wrap_all(yaw: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return angles in [-pi, pi]."""
-    turn = 2 * pi
-    return np.asarray(yaw - turn * np.round(yaw / turn))
 
 
 def read_evidence(walk: Walk) -> Evidence:

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU
-from .evidence import wrap_all
+from ..heading import TAU, wrap_all
 from .noise import LOG_ODDS, SURE
 
 if TYPE_CHECKING:

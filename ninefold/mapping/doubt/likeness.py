@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import TAU, wrap_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -105,7 +105,7 @@ def can_be_one(tree: WalkTree, n: NDArray[np.int64], m: NDArray[np.int64], shift
     miss = tree.heading[m[:, None], there] - tree.heading[n]
     if not tree.compass:
         miss -= miss[:, :1]
-    miss = np.where(real, miss - TAU * np.round(miss / TAU), 0.0)
+    miss = np.where(real, wrap_all(miss), 0.0)
     if tree.compass:
         found = np.abs(miss).max(axis=1) <= tree.tolerance + EPSILON
     else:
@@ -143,7 +143,7 @@ def _shifts(tree: WalkTree) -> NDArray[np.int64]:
             miss = np.roll(heading, -k, axis=1)[None, :, :] - heading[:, None, :]
             if not tree.compass:
                 miss = miss - miss[:, :, :1]
-            miss -= TAU * np.round(miss / TAU)
+            miss = wrap_all(miss)
             if tree.compass:
                 agree = np.abs(miss).max(axis=2) <= tree.tolerance + EPSILON
             else:

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU, wrap
-from .evidence import wrap_all
+from ..heading import TAU, wrap, wrap_all
 from .noise import LOG_ODDS, threshold
 
 if TYPE_CHECKING:
