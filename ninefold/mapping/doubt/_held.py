@@ -10,11 +10,13 @@ import numpy as np
 
 from ninefold.errors import NotPlane
 
-from .hypotheses import Hypothesis
+from .hypotheses import Hypothesis, hypothesis_of, is_closed
 from .likeness import can_be_one, likeness
-from .quotients import QuotientSearch
+from .quotients import QuotientSearch, spread_roots
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from .walk_tree import WalkTree
@@ -47,30 +49,19 @@ def some_map(
     until
         When to give up, by the monotonic clock.
     """
-    one = Hypothesis(tree, place, shift, closed=_is_closed(tree, place, shift))
+    one = Hypothesis(tree, place, shift, closed=is_closed(tree, place, shift))
     if (one.closed or not closed) and _is_legal(one):
         return one
     if monotonic() > until:
         return None
-    small = merged(tree, place, shift)
-    alike = likeness(small)
-    spread = np.unique(np.linspace(0, small.n_nodes - 1, ROOTS).astype(int)).tolist()
-    fails: NDArray[np.int64] | None = None
-    decisions = FIRST_DECISIONS
-    while True:
-        for root in spread:
-            search = QuotientSearch(small, alike, root=root, closed=closed, fails=fails)
-            while not search.done and search.decisions < decisions:
-                for found in search.more(min(SLICE, decisions - search.decisions)):
-                    whole = _unfolded(tree, place, shift, found)
-                    if _is_legal(whole) and _is_alike(whole):
-                        return whole
-                if monotonic() > until:
-                    return None
-            if search.done:
-                return False
-            fails = search.fails
-        decisions *= GROWTH
+    for search, found in _in_turn(merged(tree, place, shift), closed=closed, until=until):
+        for quotient in found:
+            whole = _unfolded(tree, place, shift, quotient)
+            if _is_legal(whole) and _is_alike(whole):
+                return whole
+        if search.done:
+            return False
+    return None
 
 
 def every_closed_map(
@@ -83,24 +74,37 @@ def every_closed_map(
     list or None
         None if time is up, or there are more than `most`.
     """
-    small = merged(tree, place, shift)
-    alike = likeness(small)
-    spread = np.unique(np.linspace(0, small.n_nodes - 1, ROOTS).astype(int)).tolist()
+    maps: list[Hypothesis] = []
+    before = None
+    for search, found in _in_turn(merged(tree, place, shift), closed=True, until=until):
+        if search is not before:
+            before, maps = search, []
+        whole = (_unfolded(tree, place, shift, quotient) for quotient in found)
+        maps += [one for one in whole if _is_legal(one) and _is_alike(one)]
+        if len(maps) > most:
+            return None
+        if search.done:
+            return maps
+    return None
+
+
+def _in_turn(tree: WalkTree, *, closed: bool, until: float) -> Iterator[tuple[QuotientSearch, NDArray[np.int64]]]:
+    """Search from several roots in turn with growing numbers of decisions; yield the search and what a slice of it found.
+
+    It ends with the slice in which time is up; whoever takes the slices leaves when a search is done.
+    """
+    alike = likeness(tree)
     fails: NDArray[np.int64] | None = None
     decisions = FIRST_DECISIONS
     while True:
-        for root in spread:
-            search = QuotientSearch(small, alike, root=root, closed=True, fails=fails)
-            maps: list[Hypothesis] = []
-            while not search.done and search.decisions < decisions:
-                whole = (
-                    _unfolded(tree, place, shift, found) for found in search.more(min(SLICE, decisions - search.decisions))
-                )
-                maps += [one for one in whole if _is_legal(one) and _is_alike(one)]
-                if monotonic() > until or len(maps) > most:
-                    return None
+        for root in spread_roots(tree, ROOTS):
+            search = QuotientSearch(tree, alike, root=root, closed=closed, fails=fails)
             if search.done:
-                return maps
+                yield search, search.more(0)
+            while not search.done and search.decisions < decisions:
+                yield search, search.more(min(SLICE, decisions - search.decisions))
+                if monotonic() > until:
+                    return
             fails = search.fails
         decisions *= GROWTH
 
@@ -149,14 +153,7 @@ def merged(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -
 
 def _unfolded(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64], found: NDArray[np.int64]) -> Hypothesis:
     """Return a quotient of the merged walk as one of the walk itself, places in the order of their first visits."""
-    raw, turned = found[place, 0], shift + found[place, 1]
-    _, first, number = np.unique(raw, return_index=True, return_inverse=True)
-    rank = np.empty(first.size, np.int64)
-    rank[np.argsort(first, kind="stable")] = np.arange(first.size)
-    number = rank[number]
-    lead = np.sort(first)
-    turned = (turned - turned[lead[number]]) % np.maximum(tree.degree, 1)
-    return Hypothesis(tree, number, turned, closed=_is_closed(tree, number, turned))
+    return hypothesis_of(tree, found[place, 0], shift + found[place, 1])
 
 
 def _is_legal(one: Hypothesis) -> bool:
@@ -177,11 +174,3 @@ def _is_alike(one: Hypothesis) -> bool:
         if i.size and not can_be_one(one.tree, n, m, (one.shift[n] - one.shift[m]) % max(degree, 1)).all():
             return False
     return True
-
-
-def _is_closed(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> bool:
-    width = tree.heading.shape[1]
-    n, x = np.nonzero(tree.other >= 0)
-    used = np.unique(place[n] * width + (x + shift[n]) % tree.degree[n])
-    lead = np.unique(place, return_index=True)[1]
-    return used.size == int(tree.degree[lead].sum())

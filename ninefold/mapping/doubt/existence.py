@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .quotient_portfolio import closed_maps
-from .quotients import QuotientSearch
+from .quotients import QuotientSearch, spread_roots
 
 if TYPE_CHECKING:
     from .likeness import Likeness
@@ -38,7 +38,7 @@ def some_map(
     """
     if tree.contradiction is not None:
         return False
-    roots = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist() if closed else [0]
+    roots = spread_roots(tree, ROOTS) if closed else [0]
     for root in roots:
         search = QuotientSearch(tree, alike, root=root, closed=closed, most_places=max_places)
         while not search.done and (not closed or search.decisions < FIRST_DECISIONS):

@@ -26,9 +26,9 @@ import numpy as np
 from ninefold._wording import quoted
 from ninefold.errors import BadInput
 
-from ..heading import TAU
 from ..plane import PlaneMap
 from ..robot.walk import Walk
+from ..turning import settle_turns
 from .backbone import Backbone, backbone_of
 from .completeness import Completeness, completeness
 from .likeness import Likeness, likeness
@@ -293,7 +293,7 @@ def _closed_maps(
 ) -> tuple[int, bool]:
     """Find the closed maps; return (count, whether all)."""
     outcome = closed_maps(tree, alike, until=until, most=most, most_places=max_places, report=report)
-    found += [_hypothesis(tree, places) for places in outcome.maps]
+    found += [hypothesis_of(tree, places[:, 0], places[:, 1]) for places in outcome.maps]
     return outcome.found, outcome.exact
 
 
@@ -313,7 +313,7 @@ def _open_maps(
     number = 0
     while not search.done:
         for places in search.more(4096):
-            one = _hypothesis(tree, places)
+            one = hypothesis_of(tree, places[:, 0], places[:, 1])
             if not one.closed:
                 number += 1
                 found.append(one)
@@ -326,19 +326,25 @@ def _open_maps(
     return number, True
 
 
-def _hypothesis(tree: WalkTree, found: NDArray[np.int64]) -> Hypothesis:
-    """Return a quotient with places in the order of their first visits and the exits of their first nodes."""
-    raw, shift = found[:, 0], found[:, 1]
+def hypothesis_of(tree: WalkTree, raw: NDArray[np.int64], shift: NDArray[np.int64]) -> Hypothesis:
+    """Return a quotient with places in the order of their first visits and the exits of their first nodes.
+
+    Parameters
+    ----------
+    raw, shift
+        (N,) int64 the place of every node, numbered in any way, and its shift against any node of that place.
+    """
     _, first, place = np.unique(raw, return_index=True, return_inverse=True)
     rank = np.empty(first.size, np.int64)
     rank[np.argsort(first, kind="stable")] = np.arange(first.size)
     place = rank[place]
     lead = np.sort(first)
     relative = (shift - shift[lead[place]]) % np.maximum(tree.degree, 1)
-    return Hypothesis(tree, place, relative, closed=_is_closed(tree, place, relative))
+    return Hypothesis(tree, place, relative, closed=is_closed(tree, place, relative))
 
 
-def _is_closed(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> bool:
+def is_closed(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64]) -> bool:
+    """Whether a quotient leaves no exit untravelled."""
     width = tree.heading.shape[1]
     n, x = np.nonzero(tree.other >= 0)
     used = np.unique(place[n] * width + (x + shift[n]) % tree.degree[n])
@@ -382,13 +388,13 @@ def plane_of(tree: WalkTree, place: NDArray[np.int64], shift: NDArray[np.int64])
         )
     if not tree.compass:
         heading = _common_frame(heading, turn, tail)
-    miss = heading[1::2] - np.pi - heading[0::2] - turn
-    settled = turn + miss - TAU * np.round(miss / TAU)
     names = [f"p{w}" for w in range(lead.size)]
     for node, name in enumerate(tree.names):
         if name is not None:
             names[int(place[node])] = name
-    return PlaneMap.from_darts(tail, after, n_vertices=lead.size, heading=heading, turn=settled, vertex_names=names)
+    return PlaneMap.from_darts(
+        tail, after, n_vertices=lead.size, heading=heading, turn=settle_turns(heading, turn), vertex_names=names
+    )
 
 
 def _common_frame(heading: NDArray[np.float64], turn: NDArray[np.float64], tail: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ._node_pairs import node_pairs, triples
 from .quotient_sat import QuotientSat
-from .quotients import QuotientSearch
+from .quotients import QuotientSearch, spread_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -160,7 +160,7 @@ class _Search:
 
     def __init__(self, tree: WalkTree, alike: Likeness, most: int, most_places: int | None) -> None:
         self.tree, self.alike, self.most, self.most_places = tree, alike, most, most_places
-        spread = np.unique(np.linspace(0, tree.n_nodes - 1, ROOTS).astype(int)).tolist()
+        spread = spread_roots(tree, ROOTS)
         self.roots = spread[::-1]  # at the end of a walk most is known: there the search is quicker, and often quickest
         self.work = FIRST_WORK
         self.seconds = 0.0

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..heading import TAU
+from ..heading import TAU, wrap_all
 from . import _quotient_state as state
 from ._quotient_kernels import place_made, put
 from ._search_kernels import searched
@@ -31,10 +31,15 @@ if TYPE_CHECKING:
     from .likeness import Likeness
     from .walk_tree import WalkTree
 
-__all__ = ["QuotientSearch"]
+__all__ = ["QuotientSearch", "spread_roots"]
 
 SLICE = 4096
 """Quotients found, and decisions made, between two looks at a budget."""
+
+
+def spread_roots(tree: WalkTree, most: int) -> list[int]:
+    """Return nodes to begin searches with, at most so many: the first, the last, and some evenly between, ascending."""
+    return [int(node) for node in np.unique(np.linspace(0, tree.n_nodes - 1, most).astype(int))]
 
 
 class QuotientSearch:
@@ -201,14 +206,14 @@ def _slack(tree: WalkTree, alike: Likeness) -> NDArray[np.float64]:
         for k in range(degree):
             n, m = np.nonzero((bits >> k) & 1)
             off = np.roll(yaw, -k, axis=1)[m] - yaw[n]
-            off -= TAU * np.round(off / TAU)
+            off = wrap_all(off)
             for exit_ in range(degree):
                 np.minimum.at(low[:, exit_], nodes[n], off[:, exit_])
                 np.maximum.at(high[:, exit_], nodes[n], off[:, exit_])
     here, x = np.nonzero(tree.other >= 0)
     there, y = tree.other[here, x], tree.back[here, x]
     miss = tree.heading[there, y] + np.pi - tree.heading[here, x] - tree.turn[here, x]
-    miss -= TAU * np.round(miss / TAU)
+    miss = wrap_all(miss)
     slack = np.zeros(tree.heading.shape)
     slack[here, x] = np.maximum(np.abs(miss + high[there, y] - low[here, x]), np.abs(miss + low[there, y] - high[here, x]))
     return slack
